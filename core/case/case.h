@@ -1,0 +1,104 @@
+/// The case: everything that a case file declares, checked, in SI units, with all defaults filled in.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/case/geometry.h"
+#include "core/case/node.h"
+
+namespace sluice {
+
+/// The background grid: a box of uniform cells. `min.size()` is the dimension, 2 (plane strain) or 3.
+struct GridCase {
+  std::vector<double> min;   ///< lower corner [m]
+  std::vector<double> max;   ///< upper corner [m]; max - min is a whole number of cells on each axis
+  std::vector<double> cell;  ///< cell size per axis [m]; a single value in the file means the same on all axes
+};
+
+/// A region filled with material points of one material.
+struct BodyCase {
+  std::string material;
+  Region region;
+  int particles_per_cell = 4;         ///< a perfect square in 2-D, a perfect cube in 3-D
+  std::vector<double> velocity;       ///< initial velocity [m/s]; Dim components
+  std::vector<std::string> replaces;  ///< materials of earlier bodies that this body may take points from
+  Place place;                        ///< where the body stands in the case file
+};
+
+/// What a face of the grid does to the material that reaches it.
+struct FaceCase {
+  enum class Normal { free, fixed };
+  enum class Tangential { free, fixed, friction };
+  Normal normal = Normal::free;
+  Tangential tangential = Tangential::free;
+  double friction = 0;  ///< Coulomb coefficient, used where tangential is `friction`
+};
+
+/// How the equations are discretised. See docs/theory.md.
+struct SchemeCase {
+  std::string shape = "quadratic_bspline";
+  std::string transfer = "apic";
+  double flip_fraction = 1;  ///< share of FLIP in the FLIP/PIC blend; 1 is pure FLIP, 0 is pure PIC
+  std::string stress_update = "usl";
+  bool f_bar = false;                     ///< volumetric strain increments averaged over cells
+  std::optional<double> fixed_time_step;  ///< [s]; absent: computed every step
+  double courant = 0.5;                   ///< wave limit: courant * h / (c + |v|)
+  double advection = 0.2;                 ///< advection limit: share of a cell that a particle crosses in one step
+  double strain_per_step = 0.05;          ///< strain limit: largest strain increment in one step
+};
+
+enum class OutflowPolicy { error, remove, clamp };
+
+/// A number that is followed during a run and written to observations.csv.
+struct ObservationCase {
+  std::string name;
+  std::string measure;            ///< name of a registered measure, for example `front`
+  std::vector<double> direction;  ///< unit vector; empty if the measure needs none
+  std::optional<Region> region;   ///< initial region of the material that is followed; absent: everything
+  Place place;
+};
+
+struct OutputCase {
+  double every = 0;          ///< [s]; 0: only the first and the last state
+  double history_every = 0;  ///< [s] between rows of history.csv and observations.csv; 0: every step
+  std::vector<std::string> pictures;
+  std::vector<double> picture_times;  ///< [s]; empty: four evenly spaced
+  double checkpoint_every = 30;       ///< wall-clock seconds between checkpoints
+};
+
+struct Case {
+  std::string file;   ///< as named by the user
+  std::string title;
+  std::string physics;
+  GridCase grid;
+  std::vector<double> gravity;  ///< [m/s2], Dim components
+  std::vector<std::pair<std::string, Node>> materials;  ///< in file order; read by the physics module
+  std::vector<BodyCase> bodies;
+  std::map<std::string, FaceCase> faces;  ///< left right bottom top (front back in 3-D)
+  Node initial_stress;                    ///< read by the physics module
+  SchemeCase scheme;
+  OutflowPolicy outflow = OutflowPolicy::error;
+  double end_time = 0;  ///< [s]
+  std::vector<ObservationCase> observe;
+  OutputCase output;
+  Node source;  ///< the whole tree as read, overrides applied
+
+  int dimension() const { return static_cast<int>(grid.min.size()); }
+};
+
+/// A `--set key=value` of the command line, for example {"materials.core.cohesion", "25 kPa"}.
+struct Override {
+  std::string key;
+  std::string value;
+};
+
+/// Reads and checks a case file. Throws CaseError naming file, line and column of everything that is wrong.
+Case load_case(const std::string& file, const std::vector<Override>& overrides = {});
+
+/// The same from text; `name` stands for the file in messages. Relative files are looked up beside `name`.
+Case parse_case(const std::string& text, const std::string& name, const std::vector<Override>& overrides = {});
+
+}  // namespace sluice

@@ -1,0 +1,40 @@
+/// Regions of space in a case file: boxes, polygons, half-spaces, and intersections of them.
+#pragma once
+
+#include <array>
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace sluice {
+
+/// Axis-aligned box, half-open: min <= x < max.
+struct Box {
+  std::vector<double> min, max;
+};
+
+/// Closed polygon in the plane of the first and last axis; in 3-D a prism along the middle axis. A point on an edge that two
+/// polygons share belongs to exactly one of them.
+struct Polygon {
+  std::vector<std::array<double, 2>> vertices;
+  double area() const;  ///< positive, whatever the orientation
+};
+
+/// All x with normal · (x - point) <= 0.
+struct HalfSpace {
+  std::vector<double> point, normal;
+};
+
+using Primitive = std::variant<Box, Polygon, HalfSpace>;
+
+/// The intersection of its parts.
+struct Region {
+  std::vector<Primitive> parts;
+  bool contains(std::span<const double> x) const;
+  /// Distance from x to the nearest surface of any part [m].
+  double distance_to_surface(std::span<const double> x) const;
+  /// Corners of the bounding box; infinite where the region is unbounded. `dimension` is 2 or 3.
+  std::array<std::vector<double>, 2> bounds(int dimension) const;
+};
+
+}  // namespace sluice

@@ -1,0 +1,46 @@
+/// Faces: what the sides of the grid do to the velocity of the nodes on them.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/case/case.h"
+#include "core/grid/blocks.h"
+#include "core/grid/lane.h"
+#include "core/grid/nodes.h"
+
+namespace sluice {
+
+/// Names of the faces, lower then upper, axis by axis; the last axis points up.
+std::vector<std::string> face_names(int dimension);
+
+template <int Dim>
+class Faces {
+ public:
+  /// Throws CaseError for a face that this dimension does not have.
+  Faces(const std::map<std::string, FaceCase>& faces, const GridGeometry<Dim>& grid, int degree);
+
+  /// Velocities that are given whatever the forces are: normal fixed, tangential fixed. Acts on the motion of a node
+  /// block; the change is added to dv as well.
+  void fix(const NodeBlock<Dim>& nodes, Lane* motion) const { impose(nodes, motion, false); }
+
+  /// The same after forces have acted, with Coulomb friction: the normal impulse m v_n that the wall takes up limits the
+  /// tangential impulse to friction * m v_n. A wall that is being pulled (v_n away from it) gives no friction.
+  void fix_with_friction(const NodeBlock<Dim>& nodes, Lane* motion) const { impose(nodes, motion, true); }
+
+  const FaceCase& face(int axis, int side) const { return face_[static_cast<std::size_t>(2 * axis + side)]; }
+  /// The node on the wall: 0 or the last one.
+  int wall_node(int axis, int side) const { return side == 0 ? 0 : last_node_[static_cast<std::size_t>(axis)]; }
+
+ private:
+  void impose(const NodeBlock<Dim>& nodes, Lane* motion, bool friction) const;
+
+  std::array<FaceCase, 2 * Dim> face_{};
+  Index<Dim> last_node_{};
+};
+
+extern template class Faces<2>;
+extern template class Faces<3>;
+
+}  // namespace sluice

@@ -1,0 +1,63 @@
+/// The uniform background grid: its box, its cells, and how it is cut into blocks.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace sluice {
+
+template <int Dim>
+using Vector = std::array<double, Dim>;
+template <int Dim>
+using Index = std::array<int, Dim>;
+
+inline constexpr int power(int base, int exponent) { return exponent == 0 ? 1 : base * power(base, exponent - 1); }
+
+/// Cells (and nodes) per axis of a block.
+template <int Dim>
+inline constexpr int block_width = Dim == 2 ? 8 : 4;
+/// Nodes of a block.
+template <int Dim>
+inline constexpr int block_nodes = power(block_width<Dim>, Dim);
+/// A block and those around it.
+template <int Dim>
+inline constexpr int neighbourhood = power(3, Dim);
+/// Cells beyond its block that a particle may wander into before the particles are sorted again.
+inline constexpr int tile_margin = 1;
+
+/// Nodes per axis of the tile of a block: all nodes that its particles can reach, for shape functions of this degree.
+template <int Dim>
+constexpr int tile_width(int degree) {
+  return block_width<Dim> + 2 * tile_margin + degree;
+}
+
+/// The grid of a scene. Cells are half-open, [x_i, x_{i+1}). With shape functions of degree p an axis of n cells has
+/// n + p nodes (control points); cell i reaches nodes i … i + p.
+template <int Dim>
+struct GridGeometry {
+  Vector<Dim> min{}, max{}, cell{};
+  Index<Dim> cells{};
+
+  double smallest_cell() const {
+    double h = cell[0];
+    for (const double c : cell) h = std::min(h, c);
+    return h;
+  }
+  double cell_volume() const {
+    double v = 1;
+    for (const double c : cell) v *= c;
+    return v;
+  }
+  /// The cell that holds x; x outside the grid belongs to the nearest cell.
+  Index<Dim> cell_of(const Vector<Dim>& x) const {
+    Index<Dim> c;
+    for (int a = 0; a < Dim; ++a) {
+      const int i = static_cast<int>(std::floor((x[a] - min[a]) / cell[a]));
+      c[a] = std::min(std::max(i, 0), cells[a] - 1);
+    }
+    return c;
+  }
+};
+
+}  // namespace sluice

@@ -1,0 +1,24 @@
+#include "core/simulation/interrupt.h"
+
+#include <csignal>
+
+namespace sluice {
+
+namespace {
+volatile std::sig_atomic_t noted = 0;
+
+void note(int signal) {
+  noted = 1;
+  std::signal(signal, SIG_DFL);
+}
+}  // namespace
+
+void watch_for_interruption() {
+  noted = 0;
+  std::signal(SIGINT, note);
+  std::signal(SIGTERM, note);
+}
+
+bool interrupted() { return noted != 0; }
+
+}  // namespace sluice

@@ -1,0 +1,273 @@
+#include "core/simulation/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+#include "core/case/resolved_case.h"
+#include "core/output/archive.h"
+#include "core/output/csv_table.h"
+#include "core/output/observation.h"
+#include "core/output/results.h"
+#include "core/output/summary.h"
+#include "core/simulation/guard.h"
+#include "core/simulation/interrupt.h"
+#include "core/simulation/parallel.h"
+#include "core/simulation/physics_module.h"
+#include "core/simulation/progress.h"
+#include "core/simulation/simulation.h"
+#include "core/version.h"
+
+namespace sluice {
+
+namespace {
+
+namespace fs = std::filesystem;
+using SteadyClock = std::chrono::steady_clock;
+
+double seconds_since(SteadyClock::time_point start) {
+  return std::chrono::duration<double>(SteadyClock::now() - start).count();
+}
+
+/// Creates the folder, or refuses to touch one that holds results.
+void prepare_folder(const RunOptions& options) {
+  if (options.resume) {
+    if (!fs::is_directory(options.folder))
+      throw CaseError(fmt::format("--resume: there is no folder {}", options.folder.string()));
+    return;
+  }
+  if (fs::exists(options.folder) && !fs::is_empty(options.folder) && !options.force)
+    throw CaseError(fmt::format("the output folder {} is not empty; take another --output, continue it with --resume, or "
+                                "overwrite it with --force",
+                                options.folder.string()));
+  fs::create_directories(options.folder);
+}
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Events at multiples of an interval of simulated time.
+class Schedule {
+ public:
+  Schedule(double every, double now) : every_(every), count_(every > 0 ? std::floor(now / every * (1 + 1e-12)) + 1 : 0) {}
+  double next() const { return every_ > 0 ? count_ * every_ : INFINITY; }
+  bool due(double time) const { return time >= next() * (1 - 1e-12); }
+  void pass(double time) {
+    while (due(time)) ++count_;
+  }
+
+ private:
+  double every_, count_;
+};
+
+class Run {
+ public:
+  Run(const Case& definition, const RunOptions& options)
+      : case_(definition), options_(options), simulation_(Simulation::create(definition)), checkpoints_(options.folder) {
+    if (options.resume) resume();
+    else checkpoints_.clear();
+    first_step_ = simulation_->steps();
+    open_outputs();
+  }
+
+  int execute() {
+    Progress progress(options_.quiet, simulation_->time(), case_.end_time);
+    Schedule frames(case_.output.every, simulation_->time()), rows(case_.output.history_every, simulation_->time());
+    if (!options_.resume) {
+      write_row({});
+      results_->add_frame(simulation_->particles(), simulation_->time(), simulation_->steps());
+      checkpoint();
+    }
+    try {
+      while (simulation_->time() < case_.end_time) {
+        const double until = std::min({case_.end_time, frames.next(), rows.next()});
+        const StepInfo info = simulation_->advance(until);
+        particle_steps_ += simulation_->particles().size();
+        const bool at_end = simulation_->time() >= case_.end_time;
+        if (case_.output.history_every <= 0 || rows.due(simulation_->time()) || at_end) write_row(info);
+        rows.pass(simulation_->time());
+        if (frames.due(simulation_->time()) || at_end) write_frame();
+        frames.pass(simulation_->time());
+        if (seconds_since(last_checkpoint_) > case_.output.checkpoint_every) checkpoint();
+        progress.show(*simulation_, info);
+        if (interrupted() && !at_end) return stop(progress);
+      }
+    } catch (const PhysicsError&) {
+      progress.end_line();
+      summarise("physics_failed");
+      throw;
+    } catch (const std::runtime_error&) {
+      progress.end_line();
+      summarise("run_failed");
+      throw;
+    }
+    progress.end_line();
+    checkpoint();
+    results_->finish();
+    summarise("end_time_reached");
+    report();
+    return exit_code::done;
+  }
+
+ private:
+  void resume() {
+    const Checkpoint checkpoint = checkpoints_.load_latest();
+    for (const auto& warning : checkpoint.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    if (checkpoint.archive.texts.at("case") != identity())
+      throw CaseError(fmt::format("--resume: the run in {} is of another case: what stands in the case file (or --set) has "
+                                  "changed, apart from end_time and output",
+                                  options_.folder.string()));
+    simulation_->restore(checkpoint.archive);
+    earlier_seconds_ = checkpoint.archive.reals.at("wall_seconds").at(0);
+    earlier_particle_steps_ = checkpoint.archive.reals.at("particle_steps").at(0);
+    if (!options_.quiet)
+      fmt::print("resuming at time {:g} s, step {}, from {}\n", checkpoint.time, checkpoint.step, checkpoint.file.string());
+  }
+
+  /// What must not change between the parts of a run: everything but when it ends and what it writes.
+  std::string identity() const {
+    Case same = case_;
+    same.end_time = 1;
+    same.output = {};
+    same.observe.clear();
+    return resolved_yaml(same, simulation_->resolved_sections());
+  }
+
+  void open_outputs() {
+    Provenance provenance = Provenance::of_this_process();
+    provenance.case_text = text_of(case_.file);
+    provenance.resolved_case = resolved_yaml(case_, simulation_->resolved_sections());
+    provenance.title = case_.title;
+    provenance.version = version_text();
+    provenance.threads = thread_count();
+    provenance.grid = case_.grid;
+    std::ofstream(options_.folder / "case.resolved.yaml") << provenance.resolved_case;
+
+    for (const auto& o : case_.observe)
+      observations_.push_back(make_observation(o, simulation_->particles(), case_.grid.cell));
+    std::vector<std::string> history = {"step", "time_s", "dt_s", "limiter", "max_speed_m_s"};
+    for (const auto& energy : simulation_->energies()) history.push_back(energy.first + "_energy_J");
+    std::vector<std::string> observed = {"step", "time_s"};
+    for (std::size_t i = 0; i < observations_.size(); ++i) observed.push_back(case_.observe[i].name + "_" + unit_word(i));
+    const double now = simulation_->time();
+    if (options_.resume) {
+      results_.emplace(options_.folder, provenance, simulation_->particles(), now);
+      history_.emplace(options_.folder / "history.csv", history, "time_s", now);
+      observed_.emplace(options_.folder / "observations.csv", observed, "time_s", now);
+    } else {
+      results_.emplace(options_.folder, provenance, simulation_->particles());
+      history_.emplace(options_.folder / "history.csv", history);
+      observed_.emplace(options_.folder / "observations.csv", observed);
+    }
+  }
+
+  /// "m/s" as a word of a column name: "m_s".
+  std::string unit_word(std::size_t i) const {
+    std::string unit = observations_[i]->unit();
+    std::replace(unit.begin(), unit.end(), '/', '_');
+    return unit;
+  }
+
+  void write_row(const StepInfo& info) {
+    const double time = simulation_->time();
+    std::vector<CsvTable::Cell> row = {simulation_->steps(), time, info.dt, info.limiter, info.speed};
+    for (const auto& energy : simulation_->energies()) row.emplace_back(energy.second);
+    history_->append(row);
+    std::vector<CsvTable::Cell> observed = {simulation_->steps(), time};
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+      const double value = observations_[i]->evaluate(simulation_->particles());
+      last_observed_[case_.observe[i].name] = value;
+      observed.emplace_back(value);
+    }
+    observed_->append(observed);
+  }
+
+  void write_frame() {
+    const auto start = SteadyClock::now();
+    results_->add_frame(simulation_->particles(), simulation_->time(), simulation_->steps());
+    output_seconds_ += seconds_since(start);
+  }
+
+  void checkpoint() {
+    const auto start = SteadyClock::now();
+    Archive archive;
+    simulation_->store(archive);
+    archive.texts["case"] = identity();
+    archive.reals["wall_seconds"] = {earlier_seconds_ + seconds_since(start_)};
+    archive.reals["particle_steps"] = {earlier_particle_steps_ + static_cast<double>(particle_steps_)};
+    checkpoints_.save(std::move(archive), simulation_->time(), simulation_->steps());
+    last_checkpoint_ = SteadyClock::now();
+    output_seconds_ += seconds_since(start);
+  }
+
+  int stop(Progress& progress) {
+    progress.end_line();
+    checkpoint();
+    summarise("interrupted");
+    fmt::print(stderr, "interrupted at time {:g} s; continue with --resume --output {}\n", simulation_->time(),
+               options_.folder.string());
+    return exit_code::interrupted;
+  }
+
+  void summarise(const std::string& reason) {
+    Summary s;
+    s.exit_reason = reason;
+    s.version = version_text();
+    s.time = simulation_->time();
+    s.steps = simulation_->steps();
+    s.particles = static_cast<std::int64_t>(simulation_->particles().size());
+    s.threads = thread_count();
+    const double here = seconds_since(start_);
+    s.wall_seconds = earlier_seconds_ + here;
+    s.particle_steps_per_second = (earlier_particle_steps_ + static_cast<double>(particle_steps_)) / s.wall_seconds;
+    s.stage_seconds = simulation_->stage_seconds();
+    s.stage_seconds["output"] = output_seconds_;
+    s.observations = last_observed_;
+    s.extra["removed_particles"] = static_cast<double>(simulation_->removed_particles());
+    s.extra["particle_bytes"] = static_cast<double>(simulation_->memory());
+    write_summary(options_.folder / "summary.json", s);
+    summary_ = s;
+  }
+
+  void report() const {
+    if (options_.quiet) return;
+    fmt::print("done: {} steps of {} particles in {:.2f} s on {} thread{}: {:.3g} million particle-steps per second\n",
+               summary_.steps, summary_.particles, summary_.wall_seconds, summary_.threads, summary_.threads == 1 ? "" : "s",
+               summary_.particle_steps_per_second / 1e6);
+    for (const auto& [stage, seconds] : summary_.stage_seconds) fmt::print("  {:<10}{:9.2f} s\n", stage, seconds);
+    for (std::size_t i = 0; i < observations_.size(); ++i)
+      fmt::print("  {} = {:.4g} {}\n", case_.observe[i].name, last_observed_.at(case_.observe[i].name),
+                 observations_[i]->unit());
+    fmt::print("results in {}\n", options_.folder.string());
+  }
+
+  const Case& case_;
+  const RunOptions& options_;
+  SteadyClock::time_point start_ = SteadyClock::now(), last_checkpoint_ = start_;
+  std::unique_ptr<Simulation> simulation_;
+  CheckpointStore checkpoints_;
+  std::optional<ResultsWriter> results_;
+  std::optional<CsvTable> history_, observed_;
+  std::vector<std::unique_ptr<Observation>> observations_;
+  std::map<std::string, double> last_observed_;
+  std::int64_t first_step_ = 0;
+  std::size_t particle_steps_ = 0;
+  double earlier_seconds_ = 0, earlier_particle_steps_ = 0, output_seconds_ = 0;
+  Summary summary_;
+};
+
+}  // namespace
+
+int run_case(const Case& definition, const RunOptions& options) {
+  prepare_folder(options);
+  watch_for_interruption();
+  return Run(definition, options).execute();
+}
+
+}  // namespace sluice

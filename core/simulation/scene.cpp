@@ -1,0 +1,60 @@
+#include "core/simulation/scene.h"
+
+#include <cmath>
+
+namespace sluice {
+
+template <int Dim>
+GridGeometry<Dim> grid_of(const GridCase& grid) {
+  GridGeometry<Dim> g;
+  for (std::size_t a = 0; a < Dim; ++a) {
+    g.min[a] = grid.min[a];
+    g.max[a] = grid.max[a];
+    g.cells[a] = static_cast<int>(std::lround((grid.max[a] - grid.min[a]) / grid.cell[a]));
+    g.cell[a] = (grid.max[a] - grid.min[a]) / g.cells[a];
+  }
+  return g;
+}
+
+template GridGeometry<2> grid_of<2>(const GridCase&);
+template GridGeometry<3> grid_of<3>(const GridCase&);
+
+template <int Dim>
+Scene<Dim>::Scene(const Case& definition)
+    : grid(grid_of<Dim>(definition.grid)),
+      shape(shape_registry<Dim>().find(definition.scheme.shape, definition.source.place)()),
+      transfer(transfer_registry().find(definition.scheme.transfer, definition.source.place)),
+      scheme(definition.scheme),
+      faces(definition.faces, grid, shape->degree()),
+      particles(Dim) {
+  for (std::size_t a = 0; a < Dim; ++a) gravity[a] = definition.gravity.empty() ? 0 : definition.gravity[a];
+  if (transfer.affine)
+    affine = particles.columns.declare({"affine_velocity", "1/s", Dim * Dim, Role::state,
+                                        "Affine velocity field of APIC, row by row: component, direction.", false});
+}
+
+template <int Dim>
+BlockParticles<Dim> Scene<Dim>::view(const ParticleBlock<Dim>& block) const {
+  BlockParticles<Dim> view{&grid, block.first_cell, block.begin, block.end, {}};
+  for (int a = 0; a < Dim; ++a) view.position[a] = particles.columns.data(particles.position, a);
+  return view;
+}
+
+template <int Dim>
+ScatterInput<Dim> Scene<Dim>::scatter_input(const ParticleBlock<Dim>& block) const {
+  const Columns& columns = particles.columns;
+  ScatterInput<Dim> in{};
+  in.particles = view(block);
+  in.mass = columns.data(particles.mass);
+  in.volume = columns.data(particles.volume);
+  for (int a = 0; a < Dim; ++a) in.velocity[a] = columns.data(particles.velocity, a);
+  for (int c = 0; c < symmetric_components<Dim>; ++c) in.stress[c] = columns.data(particles.stress, c);
+  if (transfer.affine)
+    for (int c = 0; c < Dim * Dim; ++c) in.affine[c] = columns.data(affine, c);
+  return in;
+}
+
+template struct Scene<2>;
+template struct Scene<3>;
+
+}  // namespace sluice

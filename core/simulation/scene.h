@@ -1,0 +1,56 @@
+/// Scene: everything that a physics module works on, shared by all modules.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/case/case.h"
+#include "core/grid/blocks.h"
+#include "core/grid/faces.h"
+#include "core/grid/geometry.h"
+#include "core/grid/nodes.h"
+#include "core/particles/particles.h"
+#include "core/simulation/stage_clock.h"
+#include "core/transfer/shape_kernels.h"
+#include "core/transfer/transfer_scheme.h"
+
+namespace sluice {
+
+template <int Dim>
+struct Scene {
+  explicit Scene(const Case& definition);
+
+  GridGeometry<Dim> grid;
+  Vector<Dim> gravity{};  ///< [m/s2]
+  std::unique_ptr<ShapeKernels<Dim>> shape;
+  TransferScheme transfer;
+  SchemeCase scheme;
+  Faces<Dim> faces;
+  Particles particles;
+  ColumnId affine;  ///< C of APIC [1/s], declared when the transfer is affine
+  Blocks<Dim> blocks;
+  NodeFields<Dim> nodes;
+
+  double time = 0;         ///< [s]
+  std::int64_t step = 0;   ///< steps completed
+  double previous_dt = 0;  ///< length of the last step [s]; 0 before the first
+  MotionReport motion;     ///< of the last step, over all blocks
+  double travelled = 0;    ///< most cells that a particle may have crossed since the last sort
+  StageClock clock;
+
+  /// Time over which velocities change in a step of length dt: they live at the middle of steps (leap-frog).
+  double kick(double dt) const { return 0.5 * (previous_dt + dt); }
+
+  BlockParticles<Dim> view(const ParticleBlock<Dim>& block) const;
+  /// Velocity of APIC's affine field is null when the transfer is not affine.
+  ScatterInput<Dim> scatter_input(const ParticleBlock<Dim>& block) const;
+};
+
+/// Makes the geometry of the grid of a case.
+template <int Dim>
+GridGeometry<Dim> grid_of(const GridCase& grid);
+
+extern template struct Scene<2>;
+extern template struct Scene<3>;
+
+}  // namespace sluice

@@ -1,0 +1,110 @@
+#include "core/simulation/simulation.h"
+
+#include <cmath>
+
+#include "core/particles/fill.h"
+#include "core/simulation/guard.h"
+#include "core/simulation/physics_module.h"
+#include "core/simulation/time_step.h"
+
+namespace sluice {
+
+namespace {
+
+template <int Dim>
+class SimulationOf final : public Simulation {
+ public:
+  explicit SimulationOf(const Case& definition)
+      : definition_(definition),
+        scene_(definition),
+        module_(physics_registry<Dim>().find(definition.physics, definition.source.place)(definition)) {
+    module_->declare(scene_.particles.columns);
+    fill_bodies<Dim>(
+        definition, scene_.grid, [&](int m) { return module_->density(m); }, scene_.particles);
+    module_->initialise(scene_);
+    scene_.motion.largest_speed_squared = largest_speed_squared();
+  }
+
+  double time() const override { return scene_.time; }
+  std::int64_t steps() const override { return scene_.step; }
+  const Particles& particles() const override { return scene_.particles; }
+  Particles& particles() override { return scene_.particles; }
+
+  StepInfo advance(double until) override {
+    const TimeStepLimit dt = choose_time_step(*module_, scene_, until);
+    module_->step(scene_, dt.seconds);
+    if (!scene_.motion.inside) removed_ += apply_outflow(scene_, definition_.outflow);
+    const bool arrives = until - scene_.time <= dt.seconds * (1 + 1e-9);
+    scene_.time = arrives ? until : scene_.time + dt.seconds;
+    ++scene_.step;
+    scene_.previous_dt = dt.seconds;
+    return {dt.seconds, dt.name, std::sqrt(scene_.motion.largest_speed_squared)};
+  }
+
+  std::vector<std::pair<std::string, double>> time_step_limits() const override {
+    std::vector<std::pair<std::string, double>> limits;
+    for (const auto& limit : module_->time_step_limits(scene_)) limits.emplace_back(limit.name, limit.seconds);
+    return limits;
+  }
+  std::vector<std::pair<std::string, double>> energies() const override { return module_->energies(scene_); }
+  std::map<std::string, double> stage_seconds() const override { return scene_.clock.seconds(); }
+  std::size_t removed_particles() const override { return removed_; }
+  std::size_t memory() const override { return scene_.particles.columns.memory(); }
+  std::vector<std::pair<std::string, Node>> resolved_sections() const override { return module_->resolved_sections(); }
+
+  void store(Archive& archive) const override {
+    store_particles(scene_.particles, archive);
+    archive.integers["blocks"] = scene_.blocks.record();
+    archive.integers["step"] = {scene_.step, static_cast<std::int64_t>(removed_)};
+    archive.reals["loop"] = {scene_.time,
+                             scene_.previous_dt,
+                             scene_.travelled,
+                             scene_.motion.largest_speed_squared,
+                             scene_.motion.largest_strain_rate};
+    module_->store(archive);
+  }
+
+  void restore(const Archive& archive) override {
+    restore_particles(archive, scene_.particles);
+    scene_.blocks.restore(archive.integers.at("blocks"), scene_.particles, scene_.shape->degree());
+    scene_.nodes.resize(scene_.blocks, scene_.shape->degree());
+    const auto& step = archive.integers.at("step");
+    scene_.step = step[0];
+    removed_ = static_cast<std::size_t>(step[1]);
+    const auto& loop = archive.reals.at("loop");
+    scene_.time = loop[0];
+    scene_.previous_dt = loop[1];
+    scene_.travelled = loop[2];
+    scene_.motion.largest_speed_squared = loop[3];
+    scene_.motion.largest_strain_rate = loop[4];
+    module_->restore(archive);
+  }
+
+ private:
+  double largest_speed_squared() const {
+    double largest = 0;
+    for (std::size_t p = 0; p < scene_.particles.size(); ++p) {
+      double squared = 0;
+      for (int a = 0; a < Dim; ++a) {
+        const double v = scene_.particles.columns.data(scene_.particles.velocity, a)[p];
+        squared += v * v;
+      }
+      largest = std::max(largest, squared);
+    }
+    return largest;
+  }
+
+  Case definition_;
+  Scene<Dim> scene_;
+  std::unique_ptr<PhysicsModule<Dim>> module_;
+  std::size_t removed_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Simulation> Simulation::create(const Case& definition) {
+  if (definition.dimension() == 2) return std::make_unique<SimulationOf<2>>(definition);
+  return std::make_unique<SimulationOf<3>>(definition);
+}
+
+}  // namespace sluice

@@ -1,0 +1,154 @@
+#include "core/simulation/stages.h"
+
+#include "core/simulation/multitarget.h"
+
+namespace sluice {
+
+template <int Dim>
+void activate_blocks(Scene<Dim>& scene, double allowance) {
+  if (!scene.blocks.particle_blocks().empty() && scene.travelled < allowance) return;
+  const auto timing = scene.clock.time(Stage::sort);
+  scene.blocks.sort(scene.particles, scene.grid, scene.shape->degree());
+  scene.nodes.resize(scene.blocks, scene.shape->degree());
+  scene.travelled = 0;
+}
+
+template <int Dim>
+void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt) {
+  const auto timing = scene.clock.time(Stage::scatter);
+  parallel_ranges(scene.blocks.shares(), [&](std::size_t b, std::size_t) {
+    scene.shape->scatter(what, scene.scatter_input(scene.blocks.particle_blocks()[b]), impulse_dt,
+                         scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
+  });
+}
+
+namespace {
+
+/// Nodes lighter than this share of a particle carry no velocity: their quotients would be noise.
+constexpr double negligible_mass = 1e-12;
+
+/// Calls body(number) for every node of the block that particles can reach.
+template <int Dim, class Body>
+SLUICE_ALWAYS_INLINE void for_reached_nodes(const NodeBlock<Dim>& nodes, const Body& body) {
+  constexpr int width = block_width<Dim>;
+  const int last_plane = Dim == 3 ? nodes.high[Dim - 1] : 1;
+  for (int k = Dim == 3 ? nodes.low[Dim - 1] : 0; k < last_plane; ++k)
+    for (int j = nodes.low[1]; j < nodes.high[1]; ++j)
+      for (int i = nodes.low[0]; i < nodes.high[0]; ++i) body((k * width + j) * width + i);
+}
+
+/// Moves the vector part of a momentum lane {m, x, y, (z)} to the front: {x, y, (z), 0}.
+template <int Dim>
+SLUICE_ALWAYS_INLINE Lane vector_part(Lane lane) {
+  using Order = long long __attribute__((vector_size(32)));
+  if constexpr (Dim == 2)
+    return __builtin_shuffle(lane, Lane{}, Order{1, 2, 4, 4});
+  else
+    return __builtin_shuffle(lane, Lane{}, Order{1, 2, 3, 4});
+}
+
+template <int Dim>
+SLUICE_ALWAYS_INLINE void store_motion(Lane velocity, Lane change, Lane* motion) {
+  using Order = long long __attribute__((vector_size(32)));
+  if constexpr (Dim == 2) {
+    motion[0] = __builtin_shuffle(velocity, change, Order{0, 1, 4, 5});
+  } else {
+    motion[0] = velocity;
+    motion[1] = change;
+  }
+}
+
+/// v = p / m + kick (f / m + g) and dv = v - p / m on one block; `force` may be null.
+template <int Dim>
+SLUICE_MULTITARGET void accelerate(const NodeBlock<Dim>& nodes, const Lane* momentum, const Lane* force, double kick,
+                                   const Vector<Dim>& gravity, double lightest, Lane* motion) {
+  Lane gravity_kick{};
+  for (int a = 0; a < Dim; ++a) gravity_kick[a] = kick * gravity[a];
+  for_reached_nodes(nodes, [&](int n) __attribute__((always_inline)) {
+    const double mass = momentum[n][0];
+    const bool heavy = mass > lightest;
+    const double inverse = heavy ? 1 / mass : 0;
+    const Lane before = inverse * vector_part<Dim>(momentum[n]);
+    Lane change = heavy ? gravity_kick : Lane{};
+    if (force != nullptr) change += (kick * inverse) * vector_part<Dim>(force[n]);
+    store_motion<Dim>(before + change, change, motion + n * motion_lanes<Dim>);
+  });
+}
+
+template <int Dim>
+double lightest_node(const Scene<Dim>& scene) {
+  return scene.particles.size() == 0
+             ? 0
+             : negligible_mass * scene.particles.columns.values(scene.particles.mass)[0];
+}
+
+}  // namespace
+
+template <int Dim>
+void velocity_from_momentum(Scene<Dim>& scene) {
+  const auto timing = scene.clock.time(Stage::nodes);
+  const double lightest = lightest_node(scene);
+  parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) {
+    const auto& block = scene.blocks.node_blocks()[b];
+    scene.nodes.collect_momentum(scene.blocks, b);
+    accelerate<Dim>(block, scene.nodes.momentum(b), nullptr, 0, scene.gravity, lightest, scene.nodes.motion(b));
+    scene.faces.fix(block, scene.nodes.motion(b));
+  });
+}
+
+template <int Dim>
+void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force) {
+  const auto timing = scene.clock.time(Stage::nodes);
+  const double lightest = lightest_node(scene);
+  parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) {
+    const auto& block = scene.blocks.node_blocks()[b];
+    if (collect_momentum) scene.nodes.collect_momentum(scene.blocks, b);
+    if (collect_force) scene.nodes.collect_force(scene.blocks, b);
+    accelerate<Dim>(block, scene.nodes.momentum(b), collect_force ? scene.nodes.force(b) : nullptr, kick, scene.gravity,
+                    lightest, scene.nodes.motion(b));
+    scene.faces.fix_with_friction(block, scene.nodes.motion(b));
+  });
+}
+
+template <int Dim>
+void prepare(const Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces) {
+  constexpr std::size_t columns = symmetric_components<Dim> + spin_components<Dim>;
+  const std::size_t tile = scene.nodes.tile_size() * motion_lanes<Dim>;
+  const std::size_t length = (scene.blocks.largest_block() + 15) / 8 * 8;
+  workspaces.resize(scene.blocks.shares().size() - 1);
+  for (auto& w : workspaces) {
+    w.motion_tile.resize(tile);
+    if (w.numbers.size() < columns * length) w.numbers.resize(columns * length);
+    double* next = w.numbers.data();
+    for (auto& column : w.strain.strain) column = std::exchange(next, next + length);
+    for (auto& column : w.strain.rotation) column = std::exchange(next, next + length);
+  }
+}
+
+template <int Dim>
+MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_column) {
+  Columns& columns = scene.particles.columns;
+  MotionUpdate<Dim> update{};
+  update.dt = dt;
+  update.flip_fraction = scene.scheme.flip_fraction;
+  for (int a = 0; a < Dim; ++a) {
+    update.velocity[a] = columns.data(scene.particles.velocity, a);
+    update.position[a] = columns.data(position_column, a);
+  }
+  if (scene.transfer.affine)
+    for (int c = 0; c < Dim * Dim; ++c) update.affine[c] = columns.data(scene.affine, c);
+  return update;
+}
+
+#define SLUICE_INSTANTIATE(Dim)                                          \
+  template void activate_blocks<Dim>(Scene<Dim>&, double);               \
+  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double);          \
+  template void velocity_from_momentum<Dim>(Scene<Dim>&);                \
+  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool);     \
+  template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&); \
+  template MotionUpdate<Dim> motion_update<Dim>(Scene<Dim>&, double, ColumnId);
+SLUICE_INSTANTIATE(2)
+SLUICE_INSTANTIATE(3)
+#undef SLUICE_INSTANTIATE
+
+}  // namespace sluice

@@ -1,0 +1,54 @@
+/// The stages of a step that every physics shares, in the textbook's words. Equation numbers: docs/theory.md.
+#pragma once
+
+#include <vector>
+
+#include "core/simulation/parallel.h"
+#include "core/simulation/scene.h"
+
+namespace sluice {
+
+/// Working memory of one thread.
+template <int Dim>
+struct Workspace {
+  LaneArray motion_tile;
+  std::vector<double> numbers;
+  StrainIncrements<Dim> strain;  ///< views into `numbers`, long enough for the largest block
+};
+
+/// Sorts the particles into blocks if one of them may have left the tile of its block: if `travelled` exceeds `allowance`
+/// cells (at most tile_margin).
+template <int Dim>
+void activate_blocks(Scene<Dim>& scene, double allowance = tile_margin);
+
+/// Particles to nodes, eqs. (14)-(16): fills the tiles of all blocks.
+template <int Dim>
+void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt = 0);
+
+/// Sums the tiles and divides: v = p / m, with the velocities that faces fix, eq. (17).
+template <int Dim>
+void velocity_from_momentum(Scene<Dim>& scene);
+
+/// v_new = v + kick (f / m + g), with faces and their friction, eq. (18). With `collect_force` the force tiles are
+/// summed; without, the momentum holds the impulse already.
+template <int Dim>
+void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force);
+
+/// Calls body(number of the block, block, workspace of the thread) for every block of particles, in parallel.
+template <int Dim, class Body>
+void for_each_block(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, const Body& body) {
+  prepare(scene, workspaces);
+  parallel_ranges(scene.blocks.shares(), [&](std::size_t b, std::size_t range) {
+    body(b, scene.blocks.particle_blocks()[b], workspaces[range]);
+  });
+}
+
+/// One workspace a thread, each large enough for any block.
+template <int Dim>
+void prepare(const Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces);
+
+/// Nodes to particles: velocity, position, affine field, eqs. (19)-(21). Positions go to `position_column`.
+template <int Dim>
+MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_column);
+
+}  // namespace sluice

@@ -1,0 +1,39 @@
+/// CellAverages: the volume-weighted mean of a particle quantity over each cell, for F-bar.
+#pragma once
+
+#include <vector>
+
+#include "core/grid/blocks.h"
+#include "core/grid/geometry.h"
+#include "core/transfer/shape_kernels.h"
+
+namespace sluice {
+
+/// Works block by block like the nodes do: `add` on all blocks, then (after all are done) `mean` on all blocks.
+/// A particle may be up to tile_margin cells outside of its block.
+template <int Dim>
+class CellAverages {
+ public:
+  void resize(const Blocks<Dim>& blocks);
+
+  /// Sums weight and weight * quantity over the particles of the block; `quantity` is indexed from 0 at its first
+  /// particle. Remembers each particle's cell for `mean`.
+  void add(std::size_t number, const BlockParticles<Dim>& block, const double* weight, const double* quantity);
+
+  /// Writes the mean of each particle's cell to `mean`, indexed like `quantity`.
+  void mean(const Blocks<Dim>& blocks, std::size_t number, const BlockParticles<Dim>& block, double* mean) const;
+
+ private:
+  static constexpr int width = block_width<Dim> + 2 * tile_margin;
+  static constexpr std::size_t tile_cells = power(width, Dim);
+  struct Sums {
+    double weight = 0, product = 0;
+  };
+  std::vector<Sums> tiles_;
+  std::vector<std::int32_t> cell_;  // of each particle, in the tile of its block
+};
+
+extern template class CellAverages<2>;
+extern template class CellAverages<3>;
+
+}  // namespace sluice

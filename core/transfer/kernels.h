@@ -1,0 +1,475 @@
+/// The transfer kernels, written once for every shape function and dimension.
+///
+/// Particles are taken in chunks. Within a chunk, what is the same for all particles (weights, updates) is done in loops
+/// over particles that the compiler vectorizes; the sums over nodes are done particle by particle, with one vector
+/// operation a node and field lane. Included only by the files that define a shape function.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "core/simulation/multitarget.h"
+#include "core/transfer/shape_kernels.h"
+
+namespace sluice {
+
+inline constexpr int chunk_size = 64;
+
+namespace kernel {
+
+/// Shape functions of a chunk of particles, by axis and node, and where in the tile each particle's first node is.
+template <int Dim, class Shape>
+struct ChunkWeights {
+  static constexpr int nodes = Shape::degree + 1;
+  alignas(64) double value[Dim][nodes][chunk_size];
+  alignas(64) double slope[Dim][nodes][chunk_size];     ///< [1/m]
+  alignas(64) double distance[Dim][nodes][chunk_size];  ///< x_i - x [m]
+  alignas(64) double affine[Dim][nodes][chunk_size];    ///< [1/m]
+  alignas(64) std::int32_t base[chunk_size];
+};
+
+template <int Dim, class Shape>
+inline constexpr int tile_row = tile_width<Dim>(Shape::degree);
+
+/// Distance in the tile between nodes that are neighbours along an axis.
+template <int Dim, class Shape>
+constexpr int tile_stride(int axis) {
+  return power(tile_row<Dim, Shape>, axis);
+}
+
+template <int Dim, class Shape, bool Distances, bool AffineWeights>
+SLUICE_ALWAYS_INLINE void weigh(const BlockParticles<Dim>& block, std::uint32_t begin, int count,
+                         ChunkWeights<Dim, Shape>& w) {
+  constexpr int nodes = Shape::degree + 1;
+  for (int p = 0; p < count; ++p) w.base[p] = 0;
+  for (int a = 0; a < Dim; ++a) {
+    const double* __restrict x = block.position[a] + begin;
+    const double low = block.grid->min[a], h = block.grid->cell[a], inverse = 1 / h;
+    const double last_cell = block.grid->cells[a] - 1;
+    const int first_of_tile = block.first_cell[a] - tile_margin, stride = tile_stride<Dim, Shape>(a);
+#pragma omp simd
+    for (int p = 0; p < count; ++p) {
+      const double s = (x[p] - low) * inverse;
+      double cell = std::floor(s);
+      cell = cell > 0 ? cell : 0;  // a point on the upper face of the grid counts to the last cell
+      cell = cell < last_cell ? cell : last_cell;
+      const double t = s - cell;
+      const double first = cell == 0 ? 1.0 : 0.0, last = cell == last_cell ? 1.0 : 0.0;
+      double value[nodes], slope[nodes], offset[nodes];
+      Shape::evaluate(t, first, last, value, slope, offset);
+      for (int i = 0; i < nodes; ++i) {
+        w.value[a][i][p] = value[i];
+        w.slope[a][i][p] = slope[i] * inverse;
+        if constexpr (Distances) w.distance[a][i][p] = (offset[i] - t) * h;
+      }
+      if constexpr (AffineWeights) {
+        double weight[nodes];
+        Shape::affine(t, first, last, weight);
+        for (int i = 0; i < nodes; ++i) w.affine[a][i][p] = weight[i] * inverse;
+      }
+      w.base[p] += (static_cast<std::int32_t>(cell) - first_of_tile) * stride;
+    }
+  }
+}
+
+/// sigma in the notation of `symmetric_components`, as the columns that grad N is multiplied with.
+template <int Dim>
+SLUICE_ALWAYS_INLINE void stress_columns(const std::array<const double*, symmetric_components<Dim>>& stress, double factor,
+                                  std::uint32_t p, Lane* column) {
+  if constexpr (Dim == 2) {
+    const double xy = factor * stress[3][p];
+    column[0] = Lane{0, factor * stress[0][p], xy, 0};
+    column[1] = Lane{0, xy, factor * stress[1][p], 0};
+  } else {
+    const double xy = factor * stress[3][p], yz = factor * stress[4][p], xz = factor * stress[5][p];
+    column[0] = Lane{0, factor * stress[0][p], xy, xz};
+    column[1] = Lane{0, xy, factor * stress[1][p], yz};
+    column[2] = Lane{0, xz, yz, factor * stress[2][p]};
+  }
+}
+
+template <int Dim>
+SLUICE_ALWAYS_INLINE Lane mass_and_momentum(double mass, const std::array<const double*, Dim>& velocity, std::uint32_t p) {
+  if constexpr (Dim == 2)
+    return Lane{mass, mass * velocity[0][p], mass * velocity[1][p], 0};
+  else
+    return Lane{mass, mass * velocity[0][p], mass * velocity[1][p], mass * velocity[2][p]};
+}
+
+/// Adds  N (base + sum_b (x_i - x)_b slope_b) + sum_b dN/dx_b flux_b  to every node of one particle.
+/// `Affine` and `Flux` say which of the terms are there.
+template <int Dim, class Shape, bool Affine, bool Flux>
+SLUICE_ALWAYS_INLINE void add_to_nodes(const ChunkWeights<Dim, Shape>& w, int p, Lane base, const Lane* slope,
+                                const Lane* flux, Lane* tile) {
+  constexpr int nodes = Shape::degree + 1;
+  Lane* const origin = tile + w.base[p];
+  for (int k = 0; k < (Dim == 3 ? nodes : 1); ++k) {
+    Lane plane = base, plane_slope_x{}, plane_slope_y{}, plane_flux{}, plane_flux_x{}, plane_flux_y{};
+    if constexpr (Affine) plane_slope_x = slope[0], plane_slope_y = slope[1];
+    if constexpr (Flux) plane_flux_x = flux[0], plane_flux_y = flux[1];
+    if constexpr (Dim == 3) {
+      const double n = w.value[2][k][p];
+      if constexpr (Affine) {
+        plane = n * (plane + w.distance[2][k][p] * slope[2]);
+        plane_slope_x *= n;
+        plane_slope_y *= n;
+      } else {
+        plane *= n;
+      }
+      if constexpr (Flux) {
+        plane_flux = w.slope[2][k][p] * flux[2];
+        plane_flux_x *= n;
+        plane_flux_y *= n;
+      }
+    }
+    for (int j = 0; j < nodes; ++j) {
+      const double n = w.value[1][j][p];
+      Lane row = plane, row_slope{}, row_flux{};
+      if constexpr (Affine) {
+        row += w.distance[1][j][p] * plane_slope_y;
+        row_slope = n * plane_slope_x;
+      }
+      row *= n;
+      if constexpr (Flux) {
+        row += w.slope[1][j][p] * plane_flux_y;
+        if constexpr (Dim == 3) row += n * plane_flux;
+        row_flux = n * plane_flux_x;
+      }
+      Lane* const node = origin + j * tile_stride<Dim, Shape>(1) + k * tile_stride<Dim, Shape>(2);
+      for (int i = 0; i < nodes; ++i) {
+        Lane sum = row;
+        if constexpr (Affine) sum += w.distance[0][i][p] * row_slope;
+        sum *= w.value[0][i][p];
+        if constexpr (Flux) sum += w.slope[0][i][p] * row_flux;
+        node[i] += sum;
+      }
+    }
+  }
+}
+
+template <int Dim, class Shape, ScatterWhat What, bool Affine>
+SLUICE_MULTITARGET void scatter(const ScatterInput<Dim>& in, double impulse_dt, Lane* tile, Lane* force_tile) {
+  constexpr bool momentum = What != ScatterWhat::force;
+  constexpr bool impulse = What == ScatterWhat::momentum_and_impulse;
+  constexpr bool force = What == ScatterWhat::force || What == ScatterWhat::momentum_and_force;
+  constexpr std::size_t tile_bytes = sizeof(Lane) * power(tile_row<Dim, Shape>, Dim);
+  if constexpr (momentum) std::memset(static_cast<void*>(tile), 0, tile_bytes);
+  if constexpr (force) std::memset(static_cast<void*>(force_tile), 0, tile_bytes);
+
+  ChunkWeights<Dim, Shape> w;
+  for (std::uint32_t begin = in.particles.begin; begin < in.particles.end; begin += chunk_size) {
+    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, in.particles.end - begin));
+    weigh<Dim, Shape, Affine, false>(in.particles, begin, count, w);
+    for (int k = 0; k < count; ++k) {
+      const std::uint32_t p = begin + static_cast<std::uint32_t>(k);
+      Lane flux[Dim] = {}, slope[Dim] = {};
+      if constexpr (impulse || force) stress_columns<Dim>(in.stress, -in.volume[p] * (impulse ? impulse_dt : 1), p, flux);
+      if constexpr (Affine) {
+        const double m = in.mass[p];
+        for (int b = 0; b < Dim; ++b) {
+          slope[b] = Lane{0, m * in.affine[static_cast<std::size_t>(b)][p],
+                          m * in.affine[static_cast<std::size_t>(Dim + b)][p], 0};
+          if constexpr (Dim == 3) slope[b][3] = m * in.affine[static_cast<std::size_t>(2 * Dim + b)][p];
+        }
+      }
+      if constexpr (momentum)
+        add_to_nodes<Dim, Shape, Affine, impulse>(w, k, mass_and_momentum<Dim>(in.mass[p], in.velocity, p), slope, flux,
+                                                  tile);
+      if constexpr (force) add_to_nodes<Dim, Shape, false, true>(w, k, Lane{}, slope, flux, force_tile);
+    }
+  }
+}
+
+/// Sums over the nodes of one particle, and their derivatives along the axes.
+template <int Dim>
+struct Gathered {
+  Lane value[motion_lanes<Dim>];
+  Lane gradient[Dim];  ///< of the velocity lane
+  Lane affine[Dim];    ///< the same with APIC's weights
+};
+
+template <int Dim, class Shape, bool Value, bool Gradient, bool Affine>
+SLUICE_ALWAYS_INLINE Gathered<Dim> sum_nodes(const ChunkWeights<Dim, Shape>& w, int p, const Lane* motion_tile) {
+  constexpr int nodes = Shape::degree + 1, lanes = motion_lanes<Dim>;
+  const Lane* const origin = motion_tile + w.base[p] * lanes;
+  Gathered<Dim> sum{};
+  for (int k = 0; k < (Dim == 3 ? nodes : 1); ++k) {
+    Gathered<Dim> plane{};
+    for (int j = 0; j < nodes; ++j) {
+      Lane row[lanes] = {}, row_slope{}, row_affine{};
+      const Lane* const node = origin + (j * tile_stride<Dim, Shape>(1) + k * tile_stride<Dim, Shape>(2)) * lanes;
+      for (int i = 0; i < nodes; ++i) {
+        for (int l = 0; l < (Value ? lanes : 1); ++l) row[l] += w.value[0][i][p] * node[i * lanes + l];
+        if constexpr (Gradient) row_slope += w.slope[0][i][p] * node[i * lanes];
+        if constexpr (Affine) row_affine += w.affine[0][i][p] * node[i * lanes];
+      }
+      for (int l = 0; l < (Value ? lanes : 1); ++l) plane.value[l] += w.value[1][j][p] * row[l];
+      if constexpr (Gradient) {
+        plane.gradient[0] += w.value[1][j][p] * row_slope;
+        plane.gradient[1] += w.slope[1][j][p] * row[0];
+      }
+      if constexpr (Affine) {
+        plane.affine[0] += w.value[1][j][p] * row_affine;
+        plane.affine[1] += w.affine[1][j][p] * row[0];
+      }
+    }
+    if constexpr (Dim == 2) {
+      sum = plane;
+    } else {
+      const double n = w.value[2][k][p];
+      for (int l = 0; l < (Value ? lanes : 1); ++l) sum.value[l] += n * plane.value[l];
+      for (int a = 0; a < 2; ++a) {
+        if constexpr (Gradient) sum.gradient[a] += n * plane.gradient[a];
+        if constexpr (Affine) sum.affine[a] += n * plane.affine[a];
+      }
+      if constexpr (Gradient) sum.gradient[2] += w.slope[2][k][p] * plane.value[0];
+      if constexpr (Affine) sum.affine[2] += w.affine[2][k][p] * plane.value[0];
+    }
+  }
+  return sum;
+}
+
+/// What the particles of a chunk gathered: four doubles a particle and lane, to be read across particles.
+template <int Dim>
+struct ChunkGathered {
+  alignas(64) Lane value[motion_lanes<Dim>][chunk_size];
+  alignas(64) Lane gradient[Dim][chunk_size];
+  alignas(64) Lane affine[Dim][chunk_size];
+
+  static SLUICE_ALWAYS_INLINE const double* numbers(const Lane* lanes) { return reinterpret_cast<const double*>(lanes); }
+};
+
+template <int Dim, class Shape, bool Value, bool Gradient, bool Affine>
+SLUICE_ALWAYS_INLINE void sum_chunk(const ChunkWeights<Dim, Shape>& w, int count, const Lane* motion_tile,
+                             ChunkGathered<Dim>& out) {
+  for (int p = 0; p < count; ++p) {
+    const Gathered<Dim> g = sum_nodes<Dim, Shape, Value, Gradient, Affine>(w, p, motion_tile);
+    if constexpr (Value)
+      for (int l = 0; l < motion_lanes<Dim>; ++l) out.value[l][p] = g.value[l];
+    for (int a = 0; a < Dim; ++a) {
+      if constexpr (Gradient) out.gradient[a][p] = g.gradient[a];
+      if constexpr (Affine) out.affine[a][p] = g.affine[a];
+    }
+  }
+}
+
+/// Strain and rotation increments of a chunk from its velocity gradients; returns the largest absolute component.
+template <int Dim>
+SLUICE_ALWAYS_INLINE double write_strain(const ChunkGathered<Dim>& g, int count, double dt, std::uint32_t at,
+                                  const StrainIncrements<Dim>& out) {
+  const double* __restrict gx = g.numbers(g.gradient[0]);
+  const double* __restrict gy = g.numbers(g.gradient[1]);
+  double* __restrict e[symmetric_components<Dim>];
+  double* __restrict r[spin_components<Dim>];
+  for (int c = 0; c < symmetric_components<Dim>; ++c) e[c] = out.strain[static_cast<std::size_t>(c)] + at;
+  for (int c = 0; c < spin_components<Dim>; ++c) r[c] = out.rotation[static_cast<std::size_t>(c)] + at;
+  const double half = 0.5 * dt;
+  double largest = 0;
+  if constexpr (Dim == 2) {
+#pragma omp simd reduction(max : largest)
+    for (int p = 0; p < count; ++p) {
+      const double xx = dt * gx[4 * p], yy = dt * gy[4 * p + 1];
+      const double xy = half * (gy[4 * p] + gx[4 * p + 1]), spin = half * (gx[4 * p + 1] - gy[4 * p]);
+      e[0][p] = xx;
+      e[1][p] = yy;
+      e[2][p] = 0;
+      e[3][p] = xy;
+      r[0][p] = spin;
+      const double axial = std::max(std::abs(xx), std::abs(yy)), angular = std::max(std::abs(xy), std::abs(spin));
+      largest = std::max(largest, std::max(axial, angular));
+    }
+  } else {
+    const double* __restrict gz = g.numbers(g.gradient[2]);
+#pragma omp simd reduction(max : largest)
+    for (int p = 0; p < count; ++p) {
+      const double xx = dt * gx[4 * p], yy = dt * gy[4 * p + 1], zz = dt * gz[4 * p + 2];
+      const double xy = half * (gy[4 * p] + gx[4 * p + 1]), yz = half * (gz[4 * p + 1] + gy[4 * p + 2]),
+                   xz = half * (gz[4 * p] + gx[4 * p + 2]);
+      e[0][p] = xx;
+      e[1][p] = yy;
+      e[2][p] = zz;
+      e[3][p] = xy;
+      e[4][p] = yz;
+      e[5][p] = xz;
+      // w_ab = (dv_a/dx_b - dv_b/dx_a) / 2; in 2-D the sign is that of a counter-clockwise turn, w_yx
+      r[0][p] = half * (gy[4 * p] - gx[4 * p + 1]);
+      r[1][p] = half * (gz[4 * p + 1] - gy[4 * p + 2]);
+      r[2][p] = half * (gz[4 * p] - gx[4 * p + 2]);
+      const double axial = std::max(std::max(std::abs(xx), std::abs(yy)), std::abs(zz));
+      const double shear = std::max(std::max(std::abs(xy), std::abs(yz)), std::abs(xz));
+      largest = std::max(largest, std::max(axial, shear));
+    }
+  }
+  return largest;
+}
+
+template <int Dim, class Shape>
+SLUICE_MULTITARGET double gather_strain(const BlockParticles<Dim>& block, const Lane* motion_tile, double dt,
+                                        const StrainIncrements<Dim>& out) {
+  ChunkWeights<Dim, Shape> w;
+  ChunkGathered<Dim> g;
+  double largest = 0;
+  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
+    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
+    weigh<Dim, Shape, false, false>(block, begin, count, w);
+    sum_chunk<Dim, Shape, false, true, false>(w, count, motion_tile, g);
+    largest = std::max(largest, write_strain<Dim>(g, count, dt, begin - block.begin, out));
+  }
+  return largest;
+}
+
+/// Velocity, position and affine field of a chunk; `begin` is the chunk's first particle.
+template <int Dim, bool Affine>
+SLUICE_ALWAYS_INLINE void move(const ChunkGathered<Dim>& g, const BlockParticles<Dim>& block, std::uint32_t begin, int count,
+                        const MotionUpdate<Dim>& update, MotionReport& report) {
+  const double flip = update.flip_fraction, pic = 1 - flip, dt = update.dt;
+  alignas(64) double speed_squared[chunk_size] = {};
+  double travel = 0;
+  int outside = 0;
+  for (int a = 0; a < Dim; ++a) {
+    const double* __restrict nodes = g.numbers(g.value[0]) + a;
+    const double* __restrict change = Dim == 2 ? g.numbers(g.value[0]) + 2 + a : g.numbers(g.value[motion_lanes<Dim> - 1]) + a;
+    double* __restrict v = update.velocity[static_cast<std::size_t>(a)] + begin;
+    const double* x = block.position[static_cast<std::size_t>(a)] + begin;
+    double* x_new = update.position[static_cast<std::size_t>(a)] + begin;  // may be x itself
+    const double low = block.grid->min[static_cast<std::size_t>(a)], high = block.grid->max[static_cast<std::size_t>(a)];
+    const double cells_per_metre = 1 / block.grid->cell[static_cast<std::size_t>(a)];
+#pragma omp simd reduction(max : travel) reduction(+ : outside)
+    for (int p = 0; p < count; ++p) {
+      const double velocity = Affine ? nodes[4 * p] : flip * (v[p] + change[4 * p]) + pic * nodes[4 * p];
+      const double step = dt * nodes[4 * p];
+      const double x_moved = x[p] + step;
+      v[p] = velocity;
+      x_new[p] = x_moved;
+      speed_squared[p] += velocity * velocity;
+      travel = std::max(travel, std::abs(step) * cells_per_metre);
+      outside += (x_moved >= low && x_moved < high) ? 0 : 1;
+    }
+    if constexpr (Affine)
+      for (int b = 0; b < Dim; ++b) {
+        const double* __restrict c = g.numbers(g.affine[b]) + a;
+        double* __restrict out = update.affine[static_cast<std::size_t>(a * Dim + b)] + begin;
+#pragma omp simd
+        for (int p = 0; p < count; ++p) out[p] = c[4 * p];
+      }
+  }
+  double fastest = 0;
+  int bad = 0;
+#pragma omp simd reduction(max : fastest) reduction(+ : bad)
+  for (int p = 0; p < count; ++p) {
+    bad += speed_squared[p] < 1e300 ? 0 : 1;  // false for NaN, too
+    fastest = std::max(fastest, speed_squared[p]);
+  }
+  report.largest_speed_squared = std::max(report.largest_speed_squared, fastest);
+  report.largest_travel = std::max(report.largest_travel, travel);
+  report.finite = report.finite && bad == 0;
+  report.inside = report.inside && outside == 0;
+}
+
+template <int Dim, class Shape, bool Affine, bool Strain>
+SLUICE_MULTITARGET MotionReport gather_motion(const BlockParticles<Dim>& block, const Lane* motion_tile,
+                                              const MotionUpdate<Dim>& update) {
+  // With linear functions APIC's affine field is the velocity gradient: gather it once.
+  constexpr bool affine_is_gradient = Affine && Shape::degree == 1;
+  constexpr bool own_affine = Affine && !affine_is_gradient;
+  ChunkWeights<Dim, Shape> w;
+  ChunkGathered<Dim> g;
+  MotionReport report;
+  double largest_strain = 0;
+  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
+    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
+    weigh<Dim, Shape, false, own_affine>(block, begin, count, w);
+    sum_chunk<Dim, Shape, true, Strain || affine_is_gradient, own_affine>(w, count, motion_tile, g);
+    if constexpr (affine_is_gradient)
+      for (int a = 0; a < Dim; ++a) std::copy_n(g.gradient[a], count, g.affine[a]);
+    if constexpr (Strain)
+      largest_strain = std::max(largest_strain,
+                                write_strain<Dim>(g, count, update.dt, begin - block.begin, *update.strain));
+    move<Dim, Affine>(g, block, begin, count, update, report);
+  }
+  if constexpr (Strain) report.largest_strain_rate = largest_strain / update.dt;
+  return report;
+}
+
+}  // namespace kernel
+
+/// The kernels of one shape function; see ShapeKernels.
+template <int Dim, class Shape>
+class ShapeKernelsOf final : public ShapeKernels<Dim> {
+ public:
+  int degree() const override { return Shape::degree; }
+
+  double node_position(const GridGeometry<Dim>& grid, int axis, int i) const override {
+    const auto a = static_cast<std::size_t>(axis);
+    return grid.min[a] + grid.cell[a] * Shape::node_offset(i, grid.cells[a]);
+  }
+
+  Stencil<Dim> stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x) const override {
+    constexpr int nodes = Shape::degree + 1;
+    const Index<Dim> cell = grid.cell_of(x);
+    double value[Dim][nodes], slope[Dim][nodes], offset[nodes];
+    for (int a = 0; a < Dim; ++a) {
+      const double t = (x[a] - grid.min[a]) / grid.cell[a] - cell[a];
+      Shape::evaluate(t, cell[a] == 0, cell[a] == grid.cells[a] - 1, value[a], slope[a], offset);
+    }
+    Stencil<Dim> s;
+    for (int n = 0; n < power(nodes, Dim); ++n) {
+      const auto place = static_cast<std::size_t>(s.count++);
+      Index<Dim> i;
+      for (int a = 0, rest = n; a < Dim; ++a, rest /= nodes) i[a] = rest % nodes;
+      s.value[place] = 1;
+      for (int a = 0; a < Dim; ++a) {
+        s.node[place][a] = cell[a] + i[a];
+        s.value[place] *= value[a][i[a]];
+        s.gradient[place][a] = slope[a][i[a]] / grid.cell[a];
+        for (int b = 0; b < Dim; ++b)
+          if (b != a) s.gradient[place][a] *= value[b][i[b]];
+      }
+    }
+    return s;
+  }
+
+  void scatter(ScatterWhat what, const ScatterInput<Dim>& in, double dt, Lane* tile, Lane* force_tile) const override {
+    const bool affine = in.affine[0] != nullptr;
+    using enum ScatterWhat;
+    if (what == momentum)
+      affine ? kernel::scatter<Dim, Shape, momentum, true>(in, dt, tile, force_tile)
+             : kernel::scatter<Dim, Shape, momentum, false>(in, dt, tile, force_tile);
+    else if (what == force)
+      kernel::scatter<Dim, Shape, force, false>(in, dt, tile, force_tile);
+    else if (what == momentum_and_force)
+      affine ? kernel::scatter<Dim, Shape, momentum_and_force, true>(in, dt, tile, force_tile)
+             : kernel::scatter<Dim, Shape, momentum_and_force, false>(in, dt, tile, force_tile);
+    else
+      affine ? kernel::scatter<Dim, Shape, momentum_and_impulse, true>(in, dt, tile, force_tile)
+             : kernel::scatter<Dim, Shape, momentum_and_impulse, false>(in, dt, tile, force_tile);
+  }
+
+  double gather_strain(const BlockParticles<Dim>& particles, const Lane* motion_tile, double dt,
+                       const StrainIncrements<Dim>& out) const override {
+    return kernel::gather_strain<Dim, Shape>(particles, motion_tile, dt, out);
+  }
+
+  MotionReport gather_motion(const BlockParticles<Dim>& particles, const Lane* motion_tile,
+                             const MotionUpdate<Dim>& update) const override {
+    const bool affine = update.affine[0] != nullptr;
+    if (update.strain != nullptr)
+      return affine ? kernel::gather_motion<Dim, Shape, true, true>(particles, motion_tile, update)
+                    : kernel::gather_motion<Dim, Shape, false, true>(particles, motion_tile, update);
+    return affine ? kernel::gather_motion<Dim, Shape, true, false>(particles, motion_tile, update)
+                  : kernel::gather_motion<Dim, Shape, false, false>(particles, motion_tile, update);
+  }
+};
+
+/// Registers `Shape` under `name`, for 2-D and 3-D.
+#define SLUICE_REGISTER_SHAPE(tag, Shape, name, summary)                                         \
+  const bool tag##_registered =                                                                  \
+      shape_registry<2>().add(name, {summary, {}}, [] {                                          \
+        return std::unique_ptr<ShapeKernels<2>>(std::make_unique<ShapeKernelsOf<2, Shape>>());   \
+      }) &&                                                                                      \
+      shape_registry<3>().add(name, {summary, {}}, [] {                                          \
+        return std::unique_ptr<ShapeKernels<3>>(std::make_unique<ShapeKernelsOf<3, Shape>>());   \
+      });
+
+}  // namespace sluice

@@ -1,0 +1,49 @@
+#include "core/transfer/kernels.h"
+
+namespace sluice {
+namespace {
+
+/// Quadratic B-splines with knots on the cell edges, the end knots repeated (open knot vector), so that constants and
+/// linear fields are reproduced up to the wall and the outermost node carries the value at the wall: docs/theory.md, eq. (13).
+struct QuadraticBSpline {
+  static constexpr int degree = 2;
+
+  /// At t in [0, 1) of a cell: values N, slopes dN/dt, and offsets of the nodes from the cell's lower edge, in cells.
+  /// `first` and `last` are 1 in the first and last cell of the axis, else 0.
+  static SLUICE_ALWAYS_INLINE void evaluate(double t, double first, double last, double* value, double* slope,
+                                     double* offset) {
+    const double a = 0.5 + 0.5 * first, b = 0.5 + 0.5 * last, s = 1 - t;
+    value[0] = a * s * s;
+    value[2] = b * t * t;
+    value[1] = 1 - value[0] - value[2];
+    slope[0] = -2 * a * s;
+    slope[2] = 2 * b * t;
+    slope[1] = -slope[0] - slope[2];
+    offset[0] = -0.5 + 0.5 * first;  // Greville abscissae
+    offset[1] = 0.5;
+    offset[2] = 1.5 - 0.5 * last;
+  }
+  /// APIC's weights N_i (x_i - x) / sum_j N_j (x_j - x)^2, in 1/cells. Inside, the sum is 1/4. In the cell at a wall it
+  /// is t (2 - t) / 4, which goes to zero with t; t cancels, and the quotient is written without it.
+  static SLUICE_ALWAYS_INLINE void affine(double t, double first, double last, double* weight) {
+    const double s = 1 - t;
+    const double inside[3] = {2 * s * s * (-0.5 - t), 4 * (0.5 + t * s) * (0.5 - t), 2 * t * t * (1.5 - t)};
+    const double p = 4 / (2 - t), q = 4 / (2 - s);  // lower wall, upper wall (mirrored)
+    const double lower[3] = {-s * s * p, (2 - 1.5 * t) * (0.5 - t) * p, 0.5 * t * (1.5 - t) * p};
+    const double upper[3] = {-0.5 * s * (1.5 - s) * q, -(2 - 1.5 * s) * (0.5 - s) * q, t * t * q};
+    const double both[3] = {-2 * s, 2 - 4 * t, 2 * t};
+    for (int i = 0; i < 3; ++i) {
+      const double at_first = last > 0.5 ? both[i] : lower[i];
+      const double elsewhere = last > 0.5 ? upper[i] : inside[i];
+      weight[i] = first > 0.5 ? at_first : elsewhere;
+    }
+  }
+  /// Position of node i of an axis of n cells, in cells from the lower end.
+  static double node_offset(int i, int n) { return i == 0 ? 0 : i == n + 1 ? n : i - 0.5; }
+};
+
+SLUICE_REGISTER_SHAPE(quadratic_bspline, QuadraticBSpline, "quadratic_bspline",
+                      "Quadratic B-splines, modified at walls: smooth forces when particles cross cells.")
+
+}  // namespace
+}  // namespace sluice

@@ -1,0 +1,115 @@
+/// ShapeKernels: everything that depends on the shape functions, block by block.
+///
+/// A block of particles scatters to a tile of nodes, and gathers from one (see core/grid/nodes.h). The functions are
+/// virtual: one call a block of some hundred particles. Each shape function is one file that registers its kernels.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "core/case/registry.h"
+#include "core/grid/blocks.h"
+#include "core/grid/geometry.h"
+#include "core/grid/lane.h"
+#include "core/grid/nodes.h"
+
+namespace sluice {
+
+/// Independent components of the spin: 2-D one, 3-D three: the components w_ab =
+/// (dv_a/dx_b - dv_b/dx_a) / 2 with ab = yx in 2-D (a counter-clockwise turn is positive), xy yz xz in 3-D.
+template <int Dim>
+inline constexpr int spin_components = Dim == 2 ? 1 : 3;
+
+/// Strain and rotation increments of consecutive particles, tensor components (see symmetric_components).
+template <int Dim>
+struct StrainIncrements {
+  std::array<double*, symmetric_components<Dim>> strain;
+  std::array<double*, spin_components<Dim>> rotation;
+};
+
+/// The particles of a block as the kernels see them; pointers are to whole columns.
+template <int Dim>
+struct BlockParticles {
+  const GridGeometry<Dim>* grid;
+  Index<Dim> first_cell;  ///< of the block
+  std::uint32_t begin, end;
+  std::array<const double*, Dim> position;
+};
+
+template <int Dim>
+struct ScatterInput {
+  BlockParticles<Dim> particles;
+  const double* mass;
+  std::array<const double*, Dim> velocity;
+  std::array<const double*, Dim * Dim> affine{};  ///< C of APIC, row by row: C[a][b] = component a, direction b; or null
+  const double* volume;
+  std::array<const double*, symmetric_components<Dim>> stress;
+};
+
+/// What a scatter adds to the tile(s) of its block; tiles are zeroed first.
+enum class ScatterWhat {
+  momentum,            ///< {m, m v}
+  force,               ///< {0, -V sigma grad N}
+  momentum_and_force,  ///< both, to two tiles
+  momentum_and_impulse ///< {m, m v + dt f} to one tile
+};
+
+/// How a particle's velocity follows from its nodes.
+template <int Dim>
+struct MotionUpdate {
+  double dt;                                  ///< length of the step [s]
+  double flip_fraction;                       ///< not used with an affine transfer
+  std::array<double*, Dim> velocity;          ///< in and out
+  std::array<double*, Dim> position;          ///< out: position + dt * velocity of the nodes
+  std::array<double*, Dim * Dim> affine{};    ///< out: C of APIC; null without it
+  const StrainIncrements<Dim>* strain = nullptr;  ///< out, indexed from 0 at the block's first particle; null: not wanted
+};
+
+/// What the time loop wants to know of a block after its particles moved.
+struct MotionReport {
+  double largest_speed_squared = 0;  ///< [m2/s2]
+  double largest_travel = 0;         ///< share of a cell crossed in the step, over axes and particles
+  double largest_strain_rate = 0;    ///< largest absolute component [1/s]; 0 if no strain was asked for
+  bool finite = true;                ///< all velocities are finite
+  bool inside = true;                ///< all positions are inside the grid
+};
+
+/// The nodes around one point, their values and gradients: for assembly of matrices, not for hot loops.
+template <int Dim>
+struct Stencil {
+  static constexpr int capacity = power(4, Dim);
+  int count = 0;
+  std::array<Index<Dim>, capacity> node;
+  std::array<double, capacity> value;
+  std::array<Vector<Dim>, capacity> gradient;  ///< [1/m]
+};
+
+template <int Dim>
+class ShapeKernels {
+ public:
+  virtual ~ShapeKernels() = default;
+
+  virtual int degree() const = 0;  ///< cell i reaches nodes i … i + degree on each axis
+  virtual Stencil<Dim> stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x) const = 0;
+  /// Position of node (control point) `i` of axis `axis` [m]: sum_i N_i(x) position_i = x.
+  virtual double node_position(const GridGeometry<Dim>& grid, int axis, int i) const = 0;
+
+  /// `impulse_dt` [s] is used with momentum_and_impulse only.
+  virtual void scatter(ScatterWhat what, const ScatterInput<Dim>& input, double impulse_dt, Lane* tile,
+                       Lane* force_tile) const = 0;
+  /// Strain increments dt * sym grad v from the motion tile. Returns the largest absolute component.
+  virtual double gather_strain(const BlockParticles<Dim>& particles, const Lane* motion_tile, double dt,
+                             const StrainIncrements<Dim>& out) const = 0;
+  virtual MotionReport gather_motion(const BlockParticles<Dim>& particles, const Lane* motion_tile,
+                                     const MotionUpdate<Dim>& update) const = 0;
+};
+
+template <int Dim>
+using ShapeRegistry = Registry<std::function<std::unique_ptr<ShapeKernels<Dim>>()>>;
+
+/// Shape functions by the name that a case file uses. The catalogue that `sluice list shapes` shows is the 2-D one.
+template <int Dim>
+ShapeRegistry<Dim>& shape_registry();
+
+}  // namespace sluice

@@ -1,0 +1,228 @@
+#include <fmt/format.h>
+
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+
+#include "physics/initial_stress/initial_stress.h"
+#include "solvers/sparse_cholesky.h"
+
+namespace sluice {
+
+namespace {
+
+/// A little of the mass matrix is added to the stiffness, so that nodes which too few particles reach do not make it
+/// singular: 1e-8 of c^2 / h^2 for the slowest wave. A motion without strain costs no stress, however large it is.
+constexpr double regularization = 1e-8;
+
+/// Degrees of freedom: the components of the nodes that particles reach, less those that faces fix.
+template <int Dim>
+class Unknowns {
+ public:
+  explicit Unknowns(const Scene<Dim>& scene) : scene_(scene) {}
+
+  /// The unknown of a node's component, or -1 if it is fixed. Numbers are given in order of first asking.
+  std::array<int, Dim> of(const Index<Dim>& node) {
+    std::int64_t key = 0;
+    for (int a = Dim - 1; a >= 0; --a) key = key * (std::int64_t{1} << 20) + node[a];
+    const auto [place, fresh] = numbers_.try_emplace(key);
+    if (fresh)
+      for (int a = 0; a < Dim; ++a) place->second[static_cast<std::size_t>(a)] = fixed(node, a) ? -1 : count_++;
+    return place->second;
+  }
+  int count() const { return count_; }
+
+ private:
+  bool fixed(const Index<Dim>& node, int component) const {
+    for (int axis = 0; axis < Dim; ++axis)
+      for (int side = 0; side < 2; ++side) {
+        const FaceCase& face = scene_.faces.face(axis, side);
+        if (node[axis] != scene_.faces.wall_node(axis, side) || face.normal == FaceCase::Normal::free) continue;
+        if (component == axis || face.tangential != FaceCase::Tangential::free) return true;
+      }
+    return false;
+  }
+
+  const Scene<Dim>& scene_;
+  std::unordered_map<std::int64_t, std::array<int, Dim>> numbers_;
+  int count_ = 0;
+};
+
+/// Particles in order of their cells: those of a cell share their nodes, so their stiffness is summed densely first.
+template <int Dim>
+std::vector<std::uint32_t> by_cell(const Scene<Dim>& scene, std::vector<std::int64_t>& cell) {
+  const Particles& ps = scene.particles;
+  cell.resize(ps.size());
+  for (std::size_t p = 0; p < ps.size(); ++p) {
+    Vector<Dim> x;
+    for (int a = 0; a < Dim; ++a) x[a] = ps.columns.data(ps.position, a)[p];
+    const Index<Dim> c = scene.grid.cell_of(x);
+    cell[p] = 0;
+    for (int a = Dim - 1; a >= 0; --a) cell[p] = cell[p] * scene.grid.cells[a] + c[a];
+  }
+  std::vector<std::uint32_t> order(ps.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) { return cell[p] < cell[q]; });
+  return order;
+}
+
+template <int Dim>
+Stencil<Dim> stencil_at(const Scene<Dim>& scene, std::size_t p) {
+  Vector<Dim> x;
+  for (int a = 0; a < Dim; ++a) x[a] = scene.particles.columns.data(scene.particles.position, a)[p];
+  return scene.shape->stencil(scene.grid, x);
+}
+
+template <int Dim>
+class Assembly {
+ public:
+  Assembly(const Scene<Dim>& scene, const Materials<Dim>& materials, Unknowns<Dim>& unknowns)
+      : scene_(scene), materials_(materials), unknowns_(unknowns) {
+    const double slowest = slowest_wave_squared();
+    mass_factor_ = regularization * slowest / (scene.grid.smallest_cell() * scene.grid.smallest_cell());
+  }
+
+  void add_cell(const std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end) {
+    const Particles& ps = scene_.particles;
+    Eigen::MatrixXd stiffness;
+    Eigen::VectorXd force;
+    Stencil<Dim> s;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t p = order[k];
+      s = stencil_at(scene_, p);
+      if (k == begin) {
+        stiffness.setZero(s.count * Dim, s.count * Dim);
+        force.setZero(s.count * Dim);
+      }
+      const auto elasticity = materials_[static_cast<std::size_t>(ps.material[p])].elasticity();
+      add_particle(s, elasticity, ps.columns.data(ps.volume)[p], ps.columns.data(ps.mass)[p], stiffness, force);
+    }
+    std::vector<int> number(static_cast<std::size_t>(s.count) * Dim);
+    for (int i = 0; i < s.count; ++i) {
+      const auto own = unknowns_.of(s.node[static_cast<std::size_t>(i)]);
+      for (int a = 0; a < Dim; ++a) number[static_cast<std::size_t>(i * Dim + a)] = own[static_cast<std::size_t>(a)];
+    }
+    for (int r = 0; r < s.count * Dim; ++r) {
+      const int row = number[static_cast<std::size_t>(r)];
+      if (row < 0) continue;
+      forces_.emplace_back(row, force[r]);
+      for (int c = 0; c < s.count * Dim; ++c) {
+        const int column = number[static_cast<std::size_t>(c)];
+        if (column >= 0 && column <= row) entries_.emplace_back(row, column, stiffness(r, c));
+      }
+    }
+  }
+
+  Eigen::SparseMatrix<double> matrix() const {
+    Eigen::SparseMatrix<double> k(unknowns_.count(), unknowns_.count());
+    k.setFromTriplets(entries_.begin(), entries_.end());
+    return k;
+  }
+  Eigen::VectorXd force() const {
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(unknowns_.count());
+    for (const auto& [row, value] : forces_) f[row] += value;
+    return f;
+  }
+
+ private:
+  /// K_ab += V (lambda g_a g_b^T + G g_b g_a^T + G (g_a . g_b) I),  f_a += m N_a g.
+  void add_particle(const Stencil<Dim>& s, const IsotropicElasticity& e, double volume, double mass,
+                    Eigen::MatrixXd& stiffness, Eigen::VectorXd& force) const {
+    for (int i = 0; i < s.count; ++i) {
+      const auto a = static_cast<std::size_t>(i);
+      for (int d = 0; d < Dim; ++d) force[i * Dim + d] += mass * s.value[a] * scene_.gravity[d];
+      for (int j = 0; j < s.count; ++j) {
+        const auto b = static_cast<std::size_t>(j);
+        double dot = 0;
+        for (int d = 0; d < Dim; ++d) dot += s.gradient[a][d] * s.gradient[b][d];
+        for (int r = 0; r < Dim; ++r)
+          for (int c = 0; c < Dim; ++c)
+            stiffness(i * Dim + r, j * Dim + c) +=
+                volume * (e.lambda * s.gradient[a][r] * s.gradient[b][c] + e.shear * s.gradient[a][c] * s.gradient[b][r]);
+        const double diagonal = volume * e.shear * dot + mass_factor_ * mass * s.value[a] * s.value[b];
+        for (int d = 0; d < Dim; ++d) stiffness(i * Dim + d, j * Dim + d) += diagonal;
+      }
+    }
+  }
+
+  double slowest_wave_squared() const {
+    double slowest = materials_[0].elasticity().constrained_modulus() / materials_[0].density();
+    for (std::size_t m = 1; m < materials_.size(); ++m)
+      slowest = std::min(slowest, materials_[m].elasticity().constrained_modulus() / materials_[m].density());
+    return slowest;
+  }
+
+  const Scene<Dim>& scene_;
+  const Materials<Dim>& materials_;
+  Unknowns<Dim>& unknowns_;
+  double mass_factor_;
+  std::vector<Eigen::Triplet<double>> entries_;
+  std::vector<std::pair<int, double>> forces_;
+};
+
+/// sigma = lambda tr(eps) 1 + 2 G eps at one particle; returns its displacement.
+template <int Dim>
+double set_stress(Scene<Dim>& scene, const IsotropicElasticity& e, const Eigen::VectorXd& solution,
+                  Unknowns<Dim>& unknowns, std::size_t p) {
+  const Stencil<Dim> s = stencil_at(scene, p);
+  Eigen::Matrix<double, Dim, Dim> gradient = Eigen::Matrix<double, Dim, Dim>::Zero();
+  Eigen::Matrix<double, Dim, 1> displacement = Eigen::Matrix<double, Dim, 1>::Zero();
+  for (int i = 0; i < s.count; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const auto own = unknowns.of(s.node[n]);
+    for (int a = 0; a < Dim; ++a) {
+      if (own[static_cast<std::size_t>(a)] < 0) continue;
+      const double u = solution[own[static_cast<std::size_t>(a)]];
+      displacement[a] += s.value[n] * u;
+      for (int b = 0; b < Dim; ++b) gradient(a, b) += u * s.gradient[n][b];
+    }
+  }
+  Columns& columns = scene.particles.columns;
+  const double pressure = e.lambda * gradient.trace();
+  const auto set = [&](int c, double value) { columns.data(scene.particles.stress, c)[p] = value; };
+  for (int a = 0; a < 3; ++a) set(a, pressure + (a < Dim ? 2 * e.shear * gradient(a, a) : 0));
+  set(3, e.shear * (gradient(0, 1) + gradient(1, 0)));
+  if constexpr (Dim == 3) {
+    set(4, e.shear * (gradient(1, 2) + gradient(2, 1)));
+    set(5, e.shear * (gradient(0, 2) + gradient(2, 0)));
+  }
+  return displacement.norm();
+}
+
+}  // namespace
+
+template <int Dim>
+void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials) {
+  Unknowns<Dim> unknowns(scene);
+  Assembly<Dim> assembly(scene, materials, unknowns);
+  std::vector<std::int64_t> cell;
+  const std::vector<std::uint32_t> order = by_cell(scene, cell);
+  for (std::size_t begin = 0; begin < order.size();) {
+    std::size_t end = begin;
+    while (end < order.size() && cell[order[end]] == cell[order[begin]]) ++end;
+    assembly.add_cell(order, begin, end);
+    begin = end;
+  }
+
+  SparseCholesky cholesky;
+  cholesky.factorize(assembly.matrix());
+  const Eigen::VectorXd solution = cholesky.solve(assembly.force());
+
+  double mean_displacement = 0, extent = 0;
+  for (std::size_t p = 0; p < scene.particles.size(); ++p) {
+    const auto elasticity = materials[static_cast<std::size_t>(scene.particles.material[p])].elasticity();
+    mean_displacement += set_stress(scene, elasticity, solution, unknowns, p) / static_cast<double>(scene.particles.size());
+  }
+  for (int a = 0; a < Dim; ++a) extent = std::max(extent, scene.grid.max[a] - scene.grid.min[a]);
+  if (!(mean_displacement < 10 * extent))
+    throw CaseError(fmt::format("initial_stress: elastic_equilibrium does not exist: nothing holds the bodies (they would move by "
+                                "{:.3g} m); fix a face of the grid that they touch, normal to gravity at least",
+                                mean_displacement));
+}
+
+template void elastic_equilibrium<2>(Scene<2>&, const Materials<2>&);
+template void elastic_equilibrium<3>(Scene<3>&, const Materials<3>&);
+
+}  // namespace sluice

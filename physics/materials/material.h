@@ -1,0 +1,65 @@
+/// Material: the interface of constitutive models, and their registry.
+///
+/// A model updates a batch of material points of one material at a time, over plain columns, so that the compiler can
+/// vectorize; the virtual call happens once a batch. Stress: tension positive. Shear strains are tensor components
+/// (eps_xy, half of gamma_xy).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/case/registry.h"
+#include "core/particles/particles.h"
+
+namespace sluice {
+
+template <int Dim>
+struct MaterialBatch {
+  std::size_t size = 0;
+  /// Strain increment of the step; in 2-D the zz entry is zero unless F-bar is on.
+  std::array<const double*, symmetric_components<Dim>> strain_increment;
+  /// In: Cauchy stress [Pa] at the beginning of the step, already rotated with the material (Jaumann). Out: updated.
+  std::array<double*, symmetric_components<Dim>> stress;
+  /// The columns that the material declared, one pointer a component, in the order of declaration.
+  std::span<double* const> state;
+};
+
+/// Lame's first parameter and the shear modulus [Pa].
+struct IsotropicElasticity {
+  double lambda = 0;
+  double shear = 0;
+  double constrained_modulus() const { return lambda + 2 * shear; }
+  /// Elastic energy per volume [J/m3] at stress xx yy zz xy (yz xz).
+  double energy(std::span<const double> stress) const;
+  static IsotropicElasticity from_young(double youngs_modulus, double poisson_ratio);
+};
+
+class Material {
+ public:
+  virtual ~Material() = default;
+
+  virtual double density() const = 0;  ///< initial mass per volume [kg/m3]
+  /// State variables that this model keeps on each of its points, beside the stress.
+  virtual std::vector<ColumnSpec> columns() const { return {}; }
+  /// The tangent at small strain: sets the wave speed and the elastic equilibrium.
+  virtual IsotropicElasticity elasticity() const = 0;
+  /// Elastic energy per volume [J/m3] at stress xx yy zz xy (yz xz).
+  virtual double stored_energy(std::span<const double> stress) const = 0;
+
+  virtual void update(const MaterialBatch<2>& batch) const = 0;
+  virtual void update(const MaterialBatch<3>& batch) const = 0;
+};
+
+/// Makes a material from its section of the case file (the map under `materials: NAME:`).
+using MaterialFactory = std::function<std::unique_ptr<Material>(const Node& section)>;
+Registry<MaterialFactory>& material_registry();
+
+/// Reads `model:` of the section and makes that material. Throws CaseError.
+std::unique_ptr<Material> make_material(const Node& section);
+
+}  // namespace sluice

@@ -1,0 +1,33 @@
+/// Mohr-Coulomb: linear elasticity, perfect plasticity, flow by a dilation angle, tension cut-off.
+/// Equations, parameters and verification: docs/materials/mohr_coulomb.md.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "physics/materials/material.h"
+#include "physics/materials/mohr_coulomb_return.h"
+
+namespace sluice {
+
+/// Keeps one state variable, `equivalent_plastic_strain`.
+class MohrCoulomb final : public Material {
+ public:
+  /// `density` [kg/m3]; the ranges of the parameters stand beside them and are the caller's duty.
+  MohrCoulomb(double density, const MohrCoulombParameters& parameters);
+
+  double density() const override { return density_; }
+  std::vector<ColumnSpec> columns() const override;
+  IsotropicElasticity elasticity() const override { return elasticity_; }
+  double stored_energy(std::span<const double> stress) const override { return elasticity_.energy(stress); }
+  void update(const MaterialBatch<2>& batch) const override;
+  void update(const MaterialBatch<3>& batch) const override;
+
+ private:
+  double density_;
+  IsotropicElasticity elasticity_;
+  MohrCoulombReturn map_;
+  double strain_factor_;  ///< equivalent strain over the norm of differences of stress (MC.17)
+};
+
+}  // namespace sluice

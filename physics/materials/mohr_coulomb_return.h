@@ -1,0 +1,116 @@
+/// The Mohr-Coulomb return map in principal space, with a tension cut-off. Equations MC.x: docs/materials/mohr_coulomb.md.
+///
+/// Everything is closed form and free of branches, so that loops over lanes vectorize.
+/// Sources: de Souza Neto, Peric & Owen (2008), Computational Methods for Plasticity, ch. 8; Clausen, Damkilde & Andersen
+/// (2006), Int. J. Numer. Meth. Engng 66, 1796-1816.
+#pragma once
+
+#include <limits>
+
+#include "core/simulation/multitarget.h"
+#include "physics/materials/material.h"
+
+namespace sluice {
+
+/// Angles in radians, stresses in Pa.
+struct MohrCoulombParameters {
+  IsotropicElasticity elasticity;
+  double friction_angle = 0;  ///< [0, pi/2)
+  double cohesion = 0;        ///< >= 0, and > 0 where the friction angle is zero
+  double dilation_angle = 0;  ///< [0, friction_angle]
+  double tension_cutoff = std::numeric_limits<double>::infinity();  ///< >= 0; infinite: none
+};
+
+/// Principal stresses, s1 >= s2 >= s3, tension positive [Pa].
+struct PrincipalStress {
+  double s1, s2, s3;
+};
+
+/// The constants of the return, worked out once a material.
+struct MohrCoulombReturn {
+  explicit MohrCoulombReturn(const MohrCoulombParameters& parameters);
+
+  double sin_friction;
+  double strength;   ///< 2 c cos(phi)
+  double apex;       ///< c cot(phi), infinite where phi = 0
+  double cutoff;     ///< limit of the largest principal stress; infinite unless it lies below the apex
+  double cutoff_s3;  ///< s3 where the cut-off meets the face (MC.15)
+
+  double yield_slope, yield_intercept;  ///< on the surface s1 = yield_slope * s3 + yield_intercept (MC.3)
+  double face_multiplier;               ///< multiplier of the face over f (MC.7)
+  double face_s2, face_s3;              ///< drop of s2 and s3 over f on the way to the face (MC.7)
+  double compression_s3;                ///< drop of s2 = s3 over f on the way to the edge s2 = s3 (MC.9)
+  double extension_s3;                  ///< drop of s3 over f on the way to the edge s1 = s2 (MC.10)
+  double compression_gap;               ///< least (s2 - s3) / multiplier that the face keeps in order (MC.8)
+  double extension_gap;                 ///< least (s1 - s2) / multiplier that the face keeps in order (MC.8)
+
+  double cutoff_plane;   ///< lambda / (lambda + 2 G) (MC.12)
+  double cutoff_edge;    ///< lambda / (2 lambda + 2 G), Poisson's ratio (MC.13, MC.16)
+
+  bool has_cutoff() const { return cutoff < std::numeric_limits<double>::infinity(); }
+
+  /// The yield function without cut-off (MC.2) [Pa].
+  SLUICE_ALWAYS_INLINE double yield(PrincipalStress s) const {
+    return (1 + sin_friction) * s.s1 - (1 - sin_friction) * s.s3 - strength;
+  }
+
+  /// The admissible stress that belongs to a trial stress with yield(trial) > 0. Cut-off not regarded.
+  SLUICE_ALWAYS_INLINE PrincipalStress to_shear_surface(PrincipalStress trial) const;
+
+  /// The same for any trial, with the cut-off; `sheared` is the trial itself or, if it yields, its to_shear_surface.
+  SLUICE_ALWAYS_INLINE PrincipalStress to_cutoff(PrincipalStress trial, PrincipalStress sheared) const;
+};
+
+SLUICE_ALWAYS_INLINE PrincipalStress MohrCoulombReturn::to_shear_surface(PrincipalStress trial) const {
+  // The face leaves its sector of s1 >= s2 >= s3 where a gap closes; then the edge of the narrower gap (MC.8).
+  const double face_yield = yield(trial);
+  const double multiplier = face_multiplier * face_yield;
+  const double upper = trial.s1 - trial.s2, lower = trial.s2 - trial.s3;
+  const bool outside = (upper < multiplier * extension_gap) | (lower < multiplier * compression_gap);
+  const bool compression = lower * extension_gap < upper * compression_gap;
+
+  // On the edge s2 = s3 the two planes act together as one plane on s1 and the mean of s2 and s3 (MC.9); on the edge
+  // s1 = s2 likewise (MC.10).
+  const double mean_lower = 0.5 * (trial.s2 + trial.s3);
+  const double mean_upper = 0.5 * (trial.s1 + trial.s2);
+  const double compression_edge = mean_lower - compression_s3 * yield({trial.s1, mean_lower, mean_lower});
+  const double extension_edge = trial.s3 - extension_s3 * yield({mean_upper, mean_upper, trial.s3});
+  const double edge = compression ? compression_edge : extension_edge;
+  const double face = trial.s3 - face_s3 * face_yield;
+  const double unlimited = outside ? edge : face;
+
+  // Beyond the apex the order turns round: s1 < s3 exactly where s3 > apex (MC.11).
+  const bool at_apex = unlimited > apex;
+  const double s3 = at_apex ? apex : unlimited;
+  const double on_surface = yield_slope * s3 + yield_intercept;
+  const double s1 = at_apex ? apex : on_surface;
+  const double face_middle = trial.s2 - face_s2 * face_yield;
+  const double edge_middle = compression ? s3 : s1;
+  const double middle = outside ? edge_middle : face_middle;
+  const double below = middle > s1 ? s1 : middle;
+  return {s1, below < s3 ? s3 : below, s3};
+}
+
+SLUICE_ALWAYS_INLINE PrincipalStress MohrCoulombReturn::to_cutoff(PrincipalStress trial, PrincipalStress sheared) const {
+  // Cut-off alone: one, two or three principal stresses at the limit (MC.12 to MC.14).
+  const double over1 = trial.s1 - cutoff, over2 = trial.s2 - cutoff;
+  const double plane_drop = cutoff_plane * over1, edge_drop = cutoff_edge * (over1 + over2);
+  const bool on_edge = trial.s2 - plane_drop > cutoff;
+  const double plane2 = trial.s2 - plane_drop;
+  const double s2 = on_edge ? cutoff : plane2;
+  const double unlimited3 = trial.s3 - (on_edge ? edge_drop : plane_drop);
+  const double s3 = unlimited3 > cutoff ? cutoff : unlimited3;
+
+  // With the shear planes: s1 and s3 are known, and s2, in whose direction nothing flows, ends at a corner (MC.16).
+  const bool meets_shear = s3 < cutoff_s3;
+  const double free2 = trial.s2 - cutoff_edge * (over1 + (trial.s3 - cutoff_s3));
+  const double below2 = free2 > cutoff ? cutoff : free2;
+  const double corner2 = below2 < cutoff_s3 ? cutoff_s3 : below2;
+
+  const bool acts = sheared.s1 > cutoff;
+  const double cut2 = meets_shear ? corner2 : s2;
+  const double cut3 = meets_shear ? cutoff_s3 : s3;
+  return {acts ? cutoff : sheared.s1, acts ? cut2 : sheared.s2, acts ? cut3 : sheared.s3};
+}
+
+}  // namespace sluice
