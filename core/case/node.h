@@ -32,15 +32,30 @@ struct Node {
   std::vector<Node> items;  ///< list items or map values
   std::vector<std::pair<std::string, Place>> keys;  ///< map keys, parallel to items
 
+  static Node text(const std::string& scalar);
+  static Node list(std::vector<Node> items = {});
+  static Node map();
+  void set(const std::string& key, Node value);  ///< adds or replaces a value of a map
+
   explicit operator bool() const { return kind != Kind::absent; }
   const Node* find(const std::string& key) const;  ///< nullptr if this is no map or has no such key
+  Node* find(const std::string& key);
 };
 
 /// Reads YAML. Throws CaseError where the file is missing or the syntax is broken, and on duplicate keys.
 Node read_yaml_file(const std::string& file);
 Node read_yaml_text(const std::string& text, const std::string& name);
 
+/// The tree as YAML that reads back as the same tree; `indent` is that of the lines.
+std::string yaml_text(const Node& node, int indent = 0);
+
+/// "a list", "a map", "nothing", or the scalar in quotes: for messages.
+std::string description(const Node& node);
+
 /// The word of `allowed` nearest to `word` in edit distance, or "" if none is near.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& allowed);
+
+/// "allowed: a, b, c; did you mean 'b'?": the end of a message about an unknown word.
+std::string allowed_words(const std::string& word, const std::vector<std::string>& allowed);
 
 }  // namespace sluice

@@ -21,6 +21,7 @@ class Catalogue {
     std::function<std::vector<struct FieldDoc>()> keys;  ///< the keys of its section in a case file; may be empty
   };
   Catalogue(std::string kind, std::string plural);
+  ~Catalogue();
   Catalogue(const Catalogue&) = delete;
   Catalogue& operator=(const Catalogue&) = delete;
 
@@ -31,7 +32,7 @@ class Catalogue {
   /// Throws CaseError at `where`, with the nearest valid word, if `name` is not registered.
   void require(const std::string& name, const Place& where) const;
 
-  /// All catalogues of the program, by plural name.
+  /// All catalogues of the program, by plural name; those without one are left out.
   static std::map<std::string, Catalogue*>& all();
 
  protected:

@@ -65,8 +65,8 @@ void load_group(const Hdf5File& file, const std::string& group, std::map<std::st
 Archive load_checked(const Hdf5File& file) {
   const auto version = file.integer_attribute("/", "sluice_archive_version").at(0);
   if (version != archive_version)
-    throw std::runtime_error(fmt::format("{}: has format version {}; this program reads version {}", file.name(),
-                                         version, archive_version));
+    throw std::runtime_error(
+        fmt::format("{}: has format version {}; this program reads version {}", file.name(), version, archive_version));
   Archive archive;
   load_group(file, "reals", archive.reals);
   load_group(file, "integers", archive.integers);
@@ -199,8 +199,8 @@ void restore_particles(const Archive& archive, Particles& particles) {
   particles.id = id;
   particles.material = narrowed(entry(archive.integers, prefix + "material"));
   if (particles.material.size() != id.size())
-    throw std::runtime_error(fmt::format("the checkpoint has {} ids but {} materials", id.size(),
-                                         particles.material.size()));
+    throw std::runtime_error(
+        fmt::format("the checkpoint has {} ids but {} materials", id.size(), particles.material.size()));
   particles.material_names.resize(static_cast<std::size_t>(entry(archive.integers, prefix + "material_count").at(0)));
   for (std::size_t i = 0; i < particles.material_names.size(); ++i)
     particles.material_names[i] = entry(archive.texts, fmt::format("{}material_name.{}", prefix, i));
@@ -237,8 +237,7 @@ void CheckpointStore::save(Archive archive, double time, std::int64_t step) {
 Checkpoint CheckpointStore::load_latest() {
   // A file without a legible number may be the newest: it comes first, and leaves its warning.
   constexpr auto unknown = std::numeric_limits<std::int64_t>::max();
-  const bool second_is_newer =
-      stored_sequence(file(1)).value_or(unknown) > stored_sequence(file(0)).value_or(unknown);
+  const bool second_is_newer = stored_sequence(file(1)).value_or(unknown) > stored_sequence(file(0)).value_or(unknown);
   std::vector<std::string> warnings;
   for (const int slot : {second_is_newer ? 1 : 0, second_is_newer ? 0 : 1}) {
     if (!std::filesystem::exists(file(slot))) continue;

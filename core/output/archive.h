@@ -24,7 +24,8 @@ std::uint64_t checksum(const Archive& archive);
 /// Writes an HDF5 file aside, waits for the disk, and moves it into place. Throws std::runtime_error.
 void save_archive(const std::filesystem::path& path, const Archive& archive);
 
-/// Throws std::runtime_error that names the file and what is wrong: missing, truncated, another version, wrong checksum.
+/// Throws std::runtime_error that names the file and what is wrong: missing, truncated, another version, wrong
+/// checksum.
 Archive load_archive(const std::filesystem::path& path);
 
 /// Puts ids, materials, material names and all state columns under names that begin with "particles.".
@@ -49,7 +50,8 @@ class CheckpointStore {
   explicit CheckpointStore(std::filesystem::path folder);
 
   void save(Archive archive, double time, std::int64_t step);
-  /// The newest file that is intact. Throws std::runtime_error, with a line for every file that is there, if there is none.
+  /// The newest file that is intact. Throws std::runtime_error, with a line for every file that is there, if there is
+  /// none.
   Checkpoint load_latest();
   bool any() const;  ///< there is a file, intact or not
   void clear();      ///< removes the files, for a run that begins anew in this folder

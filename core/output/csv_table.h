@@ -1,8 +1,8 @@
 /// CsvTable: a table that grows by one row at a time, such as history.csv.
 ///
 /// The header names columns with their units (`time_s`). Numbers are written with the fewest digits that read back to
-/// the same double; a text cell with a comma or quote is quoted. Every row reaches the operating system at once, so that
-/// a killed run loses none.
+/// the same double; a text cell with a comma or quote is quoted. Every row reaches the operating system at once, so
+/// that a killed run loses none.
 #pragma once
 
 #include <cstdint>

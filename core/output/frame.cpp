@@ -93,8 +93,7 @@ FrameHeader write_frame(const std::filesystem::path& path, const Particles& part
     else if (field.name == "displacement")
       write_field(file, field, displacements(particles));
     else
-      write_field(file, field,
-                  interleaved(particles.columns, particles.columns.find(field.name), field.components));
+      write_field(file, field, interleaved(particles.columns, particles.columns.find(field.name), field.components));
   }
   file.close();
   aside.commit();

@@ -30,8 +30,8 @@ struct FrameHeader {
   std::size_t points = 0;
 };
 
-/// The fields that are written for these particles: all state columns with `output` (but the position, which is Points),
-/// displacement, material and id. Sorted by name.
+/// The fields that are written for these particles: all state columns with `output` (but the position, which is
+/// Points), displacement, material and id. Sorted by name.
 std::vector<FieldSpec> result_fields(const Particles& particles);
 
 /// Writes the file aside and moves it into place. Throws std::runtime_error.

@@ -233,10 +233,10 @@ std::vector<std::string> Hdf5File::read_texts(const std::string& dataset) const 
 
 void Hdf5File::write_attribute(const std::string& object, const std::string& name, hid_t type, const Hdf5Id& space,
                                const void* data) {
-  const Hdf5Id made(check(H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT,
-                                            H5P_DEFAULT),
-                          object + ": attribute " + name + " cannot be made"),
-                    H5Aclose);
+  const Hdf5Id made(
+      check(H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+            object + ": attribute " + name + " cannot be made"),
+      H5Aclose);
   check(H5Awrite(made, type, data), object + ": attribute " + name + " cannot be written");
 }
 
@@ -302,12 +302,12 @@ std::vector<std::int64_t> Hdf5File::integer_attribute(const std::string& object,
   return values;
 }
 
-#define SLUICE_INSTANTIATE(T)                                                                           \
-  template void Hdf5File::create<T>(const std::string&, const Shape&);                                  \
-  template void Hdf5File::write_rows<T>(const std::string&, std::size_t, std::span<const T>);           \
-  template std::vector<T> Hdf5File::read_rows<T>(const std::string&, std::size_t, std::size_t) const;   \
-  template void Hdf5File::write<T>(const std::string&, const std::vector<T>&, Shape);                   \
-  template std::vector<T> Hdf5File::read<T>(const std::string&) const;                                  \
+#define SLUICE_INSTANTIATE(T)                                                                         \
+  template void Hdf5File::create<T>(const std::string&, const Shape&);                                \
+  template void Hdf5File::write_rows<T>(const std::string&, std::size_t, std::span<const T>);         \
+  template std::vector<T> Hdf5File::read_rows<T>(const std::string&, std::size_t, std::size_t) const; \
+  template void Hdf5File::write<T>(const std::string&, const std::vector<T>&, Shape);                 \
+  template std::vector<T> Hdf5File::read<T>(const std::string&) const;                                \
   template void Hdf5File::create_virtual<T>(const std::string&, const Shape&, std::span<const VirtualPart>);
 SLUICE_INSTANTIATE(double)
 SLUICE_INSTANTIATE(std::int32_t)

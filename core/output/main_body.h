@@ -9,10 +9,10 @@
 
 namespace sluice {
 
-/// Particles are binned to cells of the given size [m]; cells with particles that share a face, an edge or a corner hang
-/// together; the main body is the set of cells that hang together and hold the most mass. Of equal ones it is the one
-/// with the lowest particle id. `place` is a column with the positions: current or initial.
-/// Returns one value per particle: 1 in the main body, 0 outside. Cost of order N.
+/// Particles are binned to cells of the given size [m]; cells with particles that share a face, an edge or a corner
+/// hang together; the main body is the set of cells that hang together and hold the most mass. Of equal ones it is the
+/// one with the lowest particle id. `place` is a column with the positions: current or initial. Returns one value per
+/// particle: 1 in the main body, 0 outside. Cost of order N.
 std::vector<std::uint8_t> main_body(const Particles& particles, ColumnId place, std::span<const double> cell);
 
 /// Largest place · direction [m] among the particles of the main body; not a number without particles.

@@ -6,8 +6,8 @@ namespace sluice {
 
 namespace {
 [[noreturn]] void fail(const ObservationCase& observation, const std::string& what) {
-  throw CaseError(observation.place, fmt::format("observation '{}': measure '{}' {}", observation.name,
-                                                 observation.measure, what));
+  throw CaseError(observation.place,
+                  fmt::format("observation '{}': measure '{}' {}", observation.name, observation.measure, what));
 }
 }  // namespace
 

@@ -76,7 +76,8 @@ class Results:
     def require(self, names):
         missing = [name for name in names if name not in self.fields]
         if missing:
-            sys.exit(f"{self.file.filename}: has no field {', '.join(missing)}; it has {', '.join(sorted(self.fields))}")
+            there = ", ".join(sorted(self.fields))
+            sys.exit(f"{self.file.filename}: has no field {', '.join(missing)}; it has {there}")
 
 
 def text(value):
@@ -183,15 +184,18 @@ class Scale:
             (int(values.size and values.min() < low), int(values.size and values.max() > high))
         ]
 
+    def patches(self):
+        return [Patch(color=self.map(self.norm(i)), label=m.replace("_", " ")) for i, m in enumerate(self.materials)]
+
     def explain(self, figure, axes):
         """The legend of materials, or the colour bar."""
         if self.category:
-            patches = [Patch(color=self.map(self.norm(i)), label=m.replace("_", " ")) for i, m in enumerate(self.materials)]
-            axes[0].legend(handles=patches, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=min(5, len(patches)),
-                           frameon=False)
+            axes[0].legend(handles=self.patches(), loc="lower center", bbox_to_anchor=(0.5, 1.0),
+                           ncol=min(5, len(self.materials)), frameon=False)
         else:
             mappable = plt.cm.ScalarMappable(self.norm, self.map)
-            figure.colorbar(mappable, ax=list(axes), label=self.label, extend=self.extend, shrink=0.9, aspect=30, pad=0.01)
+            figure.colorbar(mappable, ax=list(axes), label=self.label, extend=self.extend, shrink=0.9,
+                            aspect=30, pad=0.01)
 
 
 def draw_outline(axes, view, start):
@@ -224,7 +228,8 @@ def draw_field(results, view, name, frames, path):
         axis.set(aspect="equal", xlim=(view.low[0], view.high[0]), ylim=(view.low[1] - view.pixel[1], view.high[1]))
         axis.spines[["top", "right"]].set_visible(False)
         axis.set_ylabel("z [m]" if results.dimension == 3 else "y [m]")
-        axis.text(0.012, 0.94, f"t = {results.times[frame]:.4g} s", transform=axis.transAxes, va="top", fontweight="bold")
+        axis.text(0.012, 0.94, f"t = {results.times[frame]:.4g} s", transform=axis.transAxes, va="top",
+                  fontweight="bold")
     axes[-1].set_xlabel("x [m]")
     figure.suptitle(results.title, fontsize=10)
     scale.explain(figure, axes)
@@ -236,23 +241,31 @@ def draw_scatter(results, name, frames, path, most=60000):
     """3-D: the particles seen in perspective, thinned to `most`."""
     scale = Scale(results, name, frames)
     box = results.high - results.low
-    figure = plt.figure(figsize=(7.5, (1.2 + 6 * min(1, box[2] / box[0] + 0.3 * box[1] / box[0])) * len(frames)))
-    all_axes = []
-    for row, frame in enumerate(frames):
-        axes = figure.add_subplot(len(frames), 1, row + 1, projection="3d")
+    width = 7.5
+    row = 0.9 + 0.8 * width * min(1, (box[2] + 0.5 * box[1] + 0.15 * box[0]) / box[0])
+    height = row * len(frames) + 0.6
+    figure = plt.figure(figsize=(width, height))
+    for number, frame in enumerate(frames):
+        # Axes in perspective are square: each is as wide as the page, and overlaps its neighbours where it is empty.
+        middle = (height - 0.6 - (number + 0.5) * row) / height
+        axes = figure.add_axes([0, middle - 0.5 * width / height, 0.95, width / height], projection="3d")
+        axes.patch.set_alpha(0)
         keep = slice(None, None, max(1, int(results.count[frame]) // most))
         axes.scatter(*results.positions(frame)[keep].T, c=results.values(name, frame)[keep], cmap=scale.map,
                      norm=scale.norm, s=1.5, linewidths=0)
         axes.set(xlim=(results.low[0], results.high[0]), ylim=(results.low[1], results.high[1]),
-                 zlim=(results.low[2], results.high[2]), xlabel="x [m]")
-        axes.locator_params(axis="y", nbins=2)
-        axes.locator_params(axis="z", nbins=3)
-        axes.tick_params(labelsize=7)
+                 zlim=(results.low[2], results.high[2]), xlabel="x [m]", yticks=[results.low[1], results.high[1]],
+                 zticks=[results.low[2], results.high[2]])
+        axes.tick_params(labelsize=7, pad=0)
         axes.view_init(elev=22, azim=-70)
-        axes.set_box_aspect(box, zoom=1.6)
-        axes.text2D(0, 0.85, f"t = {results.times[frame]:.4g} s", transform=axes.transAxes, fontweight="bold")
-        all_axes.append(axes)
-    scale.explain(figure, all_axes)
+        axes.set_box_aspect(box, zoom=0.85)
+        figure.text(0.03, middle + 0.4 * row / height, f"t = {results.times[frame]:.4g} s", fontweight="bold")
+    if scale.category:
+        figure.legend(handles=scale.patches(), loc="upper center", ncol=5, frameon=False)
+    else:
+        bar = figure.add_axes([0.2, 1 - 0.15 / height, 0.6, 0.1 / height])
+        figure.colorbar(plt.cm.ScalarMappable(scale.norm, scale.map), cax=bar, orientation="horizontal",
+                        label=scale.label, extend=scale.extend)
     figure.savefig(path)
     plt.close(figure)
 

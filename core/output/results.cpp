@@ -46,10 +46,14 @@ std::vector<TemporalDataset> temporal_datasets(const std::vector<FieldSpec>& fie
 template <class Action>
 void with_element(Element element, Action action) {
   switch (element) {
-    case Element::real: return action(double{});
-    case Element::integer32: return action(std::int32_t{});
-    case Element::integer64: return action(std::int64_t{});
-    case Element::byte: return action(std::uint8_t{});
+    case Element::real:
+      return action(double{});
+    case Element::integer32:
+      return action(std::int32_t{});
+    case Element::integer64:
+      return action(std::int64_t{});
+    case Element::byte:
+      return action(std::uint8_t{});
   }
 }
 

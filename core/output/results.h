@@ -1,8 +1,8 @@
 /// ResultsWriter: DIR/results.h5 and DIR/results.xdmf.
 ///
-/// results.h5 is a temporal VTKHDF file (unstructured grid of vertex cells) with units and descriptions as attributes and
-/// the provenance under /Sluice. A run that is killed at any moment leaves a results.h5 that opens and holds all frames
-/// that were complete:
+/// results.h5 is a temporal VTKHDF file (unstructured grid of vertex cells) with units and descriptions as attributes
+/// and the provenance under /Sluice. A run that is killed at any moment leaves a results.h5 that opens and holds all
+/// frames that were complete:
 /// - every frame is a file of its own, DIR/frames/frame_NNNNNN.h5, and results.h5 is a small file that presents them as
 ///   virtual datasets; each file is written aside and moved into place;
 /// - `finish` replaces results.h5 by one that holds the data itself, and then removes DIR/frames.

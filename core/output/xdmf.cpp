@@ -27,8 +27,8 @@ void append_slab(std::string& text, const std::string& file, const Slab& slab) {
                  slab.type);
   // Start, stride and count of every axis.
   if (table)
-    fmt::format_to(out, "            <DataItem Dimensions=\"3 2\" Format=\"XML\">{} 0 1 1 {} {}</DataItem>\n", slab.first,
-                   slab.rows, slab.components);
+    fmt::format_to(out, "            <DataItem Dimensions=\"3 2\" Format=\"XML\">{} 0 1 1 {} {}</DataItem>\n",
+                   slab.first, slab.rows, slab.components);
   else
     fmt::format_to(out, "            <DataItem Dimensions=\"3 1\" Format=\"XML\">{} 1 {}</DataItem>\n", slab.first,
                    slab.rows);
@@ -55,10 +55,10 @@ std::string xdmf_text(const std::string& results_file, const std::vector<FrameHe
   const auto out = std::back_inserter(text);
   for (const auto& frame : frames) {
     const std::size_t points = frame.points;
-    fmt::format_to(out, "      <Grid Name=\"step {}\" GridType=\"Uniform\">\n        <Time Value=\"{}\"/>\n", frame.step,
-                   frame.time);
-    fmt::format_to(out, "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n",
-                   points);
+    fmt::format_to(out, "      <Grid Name=\"step {}\" GridType=\"Uniform\">\n        <Time Value=\"{}\"/>\n",
+                   frame.step, frame.time);
+    fmt::format_to(
+        out, "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n", points);
     text += "        <Geometry GeometryType=\"XYZ\">\n";
     append_slab(text, results_file, {"VTKHDF/Points", real_type, first, points, total, 3});
     text += "        </Geometry>\n";

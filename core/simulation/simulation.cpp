@@ -34,7 +34,7 @@ class SimulationOf final : public Simulation {
     const TimeStepLimit dt = choose_time_step(*module_, scene_, until);
     module_->step(scene_, dt.seconds);
     if (!scene_.motion.inside) removed_ += apply_outflow(scene_, definition_.outflow);
-    const bool arrives = until - scene_.time <= dt.seconds * (1 + 1e-9);
+    const bool arrives = until - scene_.time <= dt.seconds * (1 + 1e-6);
     scene_.time = arrives ? until : scene_.time + dt.seconds;
     ++scene_.step;
     scene_.previous_dt = dt.seconds;

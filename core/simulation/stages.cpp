@@ -58,7 +58,10 @@ SLUICE_ALWAYS_INLINE void store_motion(Lane velocity, Lane change, Lane* motion)
   }
 }
 
-/// v = p / m + kick (f / m + g) and dv = v - p / m on one block; `force` may be null.
+}  // namespace
+
+/// v = p / m + kick (f / m + g) and dv = v - p / m on one block; `force` may be null. (Multi-target functions need external
+/// linkage: the linker chooses among their clones.)
 template <int Dim>
 SLUICE_MULTITARGET void accelerate(const NodeBlock<Dim>& nodes, const Lane* momentum, const Lane* force, double kick,
                                    const Vector<Dim>& gravity, double lightest, Lane* motion) {
@@ -74,6 +77,8 @@ SLUICE_MULTITARGET void accelerate(const NodeBlock<Dim>& nodes, const Lane* mome
     store_motion<Dim>(before + change, change, motion + n * motion_lanes<Dim>);
   });
 }
+
+namespace {
 
 template <int Dim>
 double lightest_node(const Scene<Dim>& scene) {

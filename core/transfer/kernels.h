@@ -38,38 +38,47 @@ constexpr int tile_stride(int axis) {
   return power(tile_row<Dim, Shape>, axis);
 }
 
+/// The shape functions of one axis. Written over plain pointers and without calls, or the compiler will not vectorize it.
+template <class Shape, bool Distances, bool AffineWeights, int Nodes = Shape::degree + 1>
+SLUICE_ALWAYS_INLINE void weigh_axis(const double* __restrict x, int count, double low, double h, double last_cell,
+                                     double (*__restrict values)[chunk_size], double (*__restrict slopes)[chunk_size],
+                                     double (*__restrict distances)[chunk_size],
+                                     double (*__restrict affines)[chunk_size], double* __restrict cells) {
+  const double inverse = 1 / h;
+#pragma GCC ivdep
+  for (int p = 0; p < count; ++p) {
+    const double s = (x[p] - low) * inverse;
+    const double floor = std::floor(s), positive = floor > 0 ? floor : 0;
+    // A point on the upper face of the grid counts to the last cell.
+    const double cell = positive < last_cell ? positive : last_cell, t = s - cell;
+    const double first = cell == 0 ? 1.0 : 0.0, last = cell == last_cell ? 1.0 : 0.0;
+    double value[Nodes], slope[Nodes], offset[Nodes], weight[Nodes];
+    Shape::evaluate(t, first, last, value, slope, offset);
+    if constexpr (AffineWeights) Shape::affine(t, first, last, weight);
+    for (int i = 0; i < Nodes; ++i) {
+      values[i][p] = value[i];
+      slopes[i][p] = slope[i] * inverse;
+      if constexpr (Distances) distances[i][p] = (offset[i] - t) * h;
+      if constexpr (AffineWeights) affines[i][p] = weight[i] * inverse;
+    }
+    cells[p] = cell;
+  }
+}
+
 template <int Dim, class Shape, bool Distances, bool AffineWeights>
 SLUICE_ALWAYS_INLINE void weigh(const BlockParticles<Dim>& block, std::uint32_t begin, int count,
-                         ChunkWeights<Dim, Shape>& w) {
-  constexpr int nodes = Shape::degree + 1;
-  for (int p = 0; p < count; ++p) w.base[p] = 0;
-  for (int a = 0; a < Dim; ++a) {
-    const double* __restrict x = block.position[a] + begin;
-    const double low = block.grid->min[a], h = block.grid->cell[a], inverse = 1 / h;
-    const double last_cell = block.grid->cells[a] - 1;
-    const int first_of_tile = block.first_cell[a] - tile_margin, stride = tile_stride<Dim, Shape>(a);
-#pragma omp simd
-    for (int p = 0; p < count; ++p) {
-      const double s = (x[p] - low) * inverse;
-      double cell = std::floor(s);
-      cell = cell > 0 ? cell : 0;  // a point on the upper face of the grid counts to the last cell
-      cell = cell < last_cell ? cell : last_cell;
-      const double t = s - cell;
-      const double first = cell == 0 ? 1.0 : 0.0, last = cell == last_cell ? 1.0 : 0.0;
-      double value[nodes], slope[nodes], offset[nodes];
-      Shape::evaluate(t, first, last, value, slope, offset);
-      for (int i = 0; i < nodes; ++i) {
-        w.value[a][i][p] = value[i];
-        w.slope[a][i][p] = slope[i] * inverse;
-        if constexpr (Distances) w.distance[a][i][p] = (offset[i] - t) * h;
-      }
-      if constexpr (AffineWeights) {
-        double weight[nodes];
-        Shape::affine(t, first, last, weight);
-        for (int i = 0; i < nodes; ++i) w.affine[a][i][p] = weight[i] * inverse;
-      }
-      w.base[p] += (static_cast<std::int32_t>(cell) - first_of_tile) * stride;
-    }
+                                ChunkWeights<Dim, Shape>& w) {
+  alignas(64) double cells[Dim][chunk_size];
+  for (int a = 0; a < Dim; ++a)
+    weigh_axis<Shape, Distances, AffineWeights>(block.position[a] + begin, count, block.grid->min[a],
+                                                block.grid->cell[a], block.grid->cells[a] - 1, w.value[a], w.slope[a],
+                                                w.distance[a], w.affine[a], cells[a]);
+  int origin = 0;
+  for (int a = 0; a < Dim; ++a) origin += (block.first_cell[a] - tile_margin) * tile_stride<Dim, Shape>(a);
+  for (int p = 0; p < count; ++p) {
+    int base = -origin;
+    for (int a = 0; a < Dim; ++a) base += static_cast<std::int32_t>(cells[a][p]) * tile_stride<Dim, Shape>(a);
+    w.base[p] = base;
   }
 }
 
@@ -462,7 +471,8 @@ class ShapeKernelsOf final : public ShapeKernels<Dim> {
   }
 };
 
-/// Registers `Shape` under `name`, for 2-D and 3-D.
+/// Registers `Shape` under `name`, for 2-D and 3-D. `Shape` must have external linkage: the linker chooses among the clones of
+/// its kernels.
 #define SLUICE_REGISTER_SHAPE(tag, Shape, name, summary)                                         \
   const bool tag##_registered =                                                                  \
       shape_registry<2>().add(name, {summary, {}}, [] {                                          \

@@ -1,7 +1,7 @@
 #include "core/transfer/kernels.h"
 
 namespace sluice {
-namespace {
+namespace shape {
 
 /// Piecewise linear shape functions on the cells: docs/theory.md, eq. (12).
 struct Linear {
@@ -28,5 +28,5 @@ struct Linear {
 SLUICE_REGISTER_SHAPE(linear, Linear, "linear",
                       "Piecewise linear: the cheapest; forces jump when particles cross cells.")
 
-}  // namespace
+}  // namespace shape
 }  // namespace sluice

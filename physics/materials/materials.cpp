@@ -29,7 +29,8 @@ void Materials<Dim>::declare(Columns& particles) {
   }
 }
 
-namespace {
+// Multi-target functions need external linkage: the linker chooses among their clones.
+namespace stress_update {
 
 /// Turns the stress of n particles by the rotation whose tangent is W: Q = (I - W/2)^-1 (I + W/2).
 SLUICE_MULTITARGET void rotate(std::size_t n, const std::array<double*, 4>& stress,
@@ -115,7 +116,7 @@ SLUICE_MULTITARGET bool all_finite(std::size_t n, const std::array<double*, Comp
   return bad == 0;
 }
 
-}  // namespace
+}  // namespace stress_update
 
 template <int Dim>
 StressReport Materials<Dim>::update_stress(Particles& particles, const Blocks<Dim>& blocks,
@@ -139,14 +140,14 @@ StressReport Materials<Dim>::update_stress(Particles& particles, const Blocks<Di
       for (int c = 0; c < components_[m][s]; ++c) state[components++] = columns.data(state_[m][s], c) + batch.begin;
     material_batch.state = {state.data(), components};
 
-    rotate(n, material_batch.stress, rotation);
+    stress_update::rotate(n, material_batch.stress, rotation);
     materials_[m]->update(material_batch);
     const auto& e = material_batch.strain_increment;
-    const VolumeReport volume = update_volume(n, e[0], e[1], e[2], columns.data(particles.mass) + batch.begin,
+    const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(particles.mass) + batch.begin,
                                               columns.data(particles.volume) + batch.begin);
     const double modulus = materials_[m]->elasticity().constrained_modulus();
     report.fastest_wave = std::max(report.fastest_wave, std::sqrt(modulus * volume.largest_specific_volume));
-    report.sound = report.sound && volume.sound && all_finite(n, material_batch.stress);
+    report.sound = report.sound && volume.sound && stress_update::all_finite(n, material_batch.stress);
   }
   return report;
 }

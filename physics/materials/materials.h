@@ -30,8 +30,8 @@ class Materials {
   void declare(Columns& particles);
 
   /// Objective stress update of one block, eqs. (22)-(25) of docs/theory.md: rotates the stress with the material
-  /// (Jaumann, by the exact rotation of Hughes & Winget 1980), then applies each material's law to its batch; updates the
-  /// volumes. `strain` is indexed from 0 at the block's first particle.
+  /// (Jaumann, by the exact rotation of Hughes & Winget 1980), then applies each material's law to its batch; updates
+  /// the volumes. `strain` is indexed from 0 at the block's first particle.
   StressReport update_stress(Particles& particles, const Blocks<Dim>& blocks, const ParticleBlock<Dim>& block,
                              const StrainIncrements<Dim>& strain) const;
 
@@ -44,8 +44,8 @@ class Materials {
   std::vector<std::string> names_;
   std::vector<Node> sections_;
   std::vector<std::unique_ptr<Material>> materials_;
-  std::vector<std::vector<ColumnId>> state_;   // declared columns by material …
-  std::vector<std::vector<int>> components_;   // … and their components
+  std::vector<std::vector<ColumnId>> state_;  // declared columns by material …
+  std::vector<std::vector<int>> components_;  // … and their components
 };
 
 extern template class Materials<2>;

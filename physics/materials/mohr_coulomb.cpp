@@ -33,11 +33,11 @@ MohrCoulombReturn::MohrCoulombReturn(const MohrCoulombParameters& p) {
   face_multiplier = 1 / (up * drop1 - down * drop3);
   face_s2 = drop2 * face_multiplier;
   face_s3 = drop3 * face_multiplier;
-  const double compression_drop3 = 0.5 * (drop2 + drop3), extension_drop1 = 0.5 * (drop1 + drop2);
-  compression_s3 = compression_drop3 / (up * drop1 - down * compression_drop3);
-  extension_s3 = drop3 / (up * extension_drop1 - down * drop3);
-  compression_gap = 2 * shear * (1 - sin_dilation);
-  extension_gap = 2 * shear * (1 + sin_dilation);
+  const double lower_drop3 = 0.5 * (drop2 + drop3), upper_drop1 = 0.5 * (drop1 + drop2);
+  lower_edge_s3 = lower_drop3 / (up * drop1 - down * lower_drop3);
+  upper_edge_s3 = drop3 / (up * upper_drop1 - down * drop3);
+  lower_gap = 2 * shear * (1 - sin_dilation);
+  upper_gap = 2 * shear * (1 + sin_dilation);
 
   cutoff_plane = lambda / (lambda + 2 * shear);
   cutoff_edge = lambda / (2 * lambda + 2 * shear);
@@ -144,7 +144,7 @@ const auto schema =
         .quantity("dilation_angle", &Parameters::dilation_angle, unit::angle, from_below(0, right_angle),
                   "Dilation angle, at most the friction angle.", 0.0)
         .quantity("tension_cutoff", &Parameters::tension_cutoff, unit::stress, at_least(0),
-                  "Limit of the largest principal stress; absent: the apex c cot(phi), if there is one.");
+                  "Limit of the largest principal stress.", {"the apex c cot(phi), if there is one"});
 
 std::unique_ptr<Material> make(const Node& section) {
   const Parameters p = schema.read(section, {"model"});
@@ -153,15 +153,17 @@ std::unique_ptr<Material> make(const Node& section) {
     return value != nullptr ? value->place : section.place;
   };
   if (p.friction_angle == 0 && p.cohesion == 0) {
-    throw CaseError(place("cohesion"), "cohesion and friction_angle are both 0, so the material has no strength at all; "
-                                       "one of them must be above 0");
+    throw CaseError(place("cohesion"),
+                    "cohesion and friction_angle are both 0, so the material has no strength at all; "
+                    "one of them must be above 0");
   }
   if (p.dilation_angle > p.friction_angle) {
     constexpr double degrees = 180 / std::numbers::pi;
-    throw CaseError(place("dilation_angle"),
-                    fmt::format("dilation_angle is {:g} deg; it must be at most the friction_angle, {:g} deg, or plastic "
-                                "flow would produce energy",
-                                p.dilation_angle * degrees, p.friction_angle * degrees));
+    throw CaseError(
+        place("dilation_angle"),
+        fmt::format("dilation_angle is {:g} deg; it must be at most the friction_angle, {:g} deg, or plastic "
+                    "flow would produce energy",
+                    p.dilation_angle * degrees, p.friction_angle * degrees));
   }
   MohrCoulombParameters parameters = {.elasticity = IsotropicElasticity::from_young(p.youngs_modulus, p.poisson_ratio),
                                       .friction_angle = p.friction_angle,

@@ -1,8 +1,9 @@
-/// The Mohr-Coulomb return map in principal space, with a tension cut-off. Equations MC.x: docs/materials/mohr_coulomb.md.
+/// The Mohr-Coulomb return map in principal space, with a tension cut-off. Equations MC.x:
+/// docs/materials/mohr_coulomb.md.
 ///
 /// Everything is closed form and free of branches, so that loops over lanes vectorize.
-/// Sources: de Souza Neto, Peric & Owen (2008), Computational Methods for Plasticity, ch. 8; Clausen, Damkilde & Andersen
-/// (2006), Int. J. Numer. Meth. Engng 66, 1796-1816.
+/// Sources: de Souza Neto, Peric & Owen (2008), Computational Methods for Plasticity, ch. 8; Clausen, Damkilde &
+/// Andersen (2007), Computers & Structures 85, 1795-1807.
 #pragma once
 
 #include <limits>
@@ -15,9 +16,9 @@ namespace sluice {
 /// Angles in radians, stresses in Pa.
 struct MohrCoulombParameters {
   IsotropicElasticity elasticity;
-  double friction_angle = 0;  ///< [0, pi/2)
-  double cohesion = 0;        ///< >= 0, and > 0 where the friction angle is zero
-  double dilation_angle = 0;  ///< [0, friction_angle]
+  double friction_angle = 0;                                        ///< [0, pi/2)
+  double cohesion = 0;                                              ///< >= 0, and > 0 where the friction angle is zero
+  double dilation_angle = 0;                                        ///< [0, friction_angle]
   double tension_cutoff = std::numeric_limits<double>::infinity();  ///< >= 0; infinite: none
 };
 
@@ -39,13 +40,13 @@ struct MohrCoulombReturn {
   double yield_slope, yield_intercept;  ///< on the surface s1 = yield_slope * s3 + yield_intercept (MC.3)
   double face_multiplier;               ///< multiplier of the face over f (MC.7)
   double face_s2, face_s3;              ///< drop of s2 and s3 over f on the way to the face (MC.7)
-  double compression_s3;                ///< drop of s2 = s3 over f on the way to the edge s2 = s3 (MC.9)
-  double extension_s3;                  ///< drop of s3 over f on the way to the edge s1 = s2 (MC.10)
-  double compression_gap;               ///< least (s2 - s3) / multiplier that the face keeps in order (MC.8)
-  double extension_gap;                 ///< least (s1 - s2) / multiplier that the face keeps in order (MC.8)
+  double lower_edge_s3;                 ///< drop of s2 = s3 over f on the way to the edge s2 = s3 (MC.9)
+  double upper_edge_s3;                 ///< drop of s3 over f on the way to the edge s1 = s2 (MC.10)
+  double lower_gap;                     ///< least (s2 - s3) / multiplier that the face keeps in order (MC.8)
+  double upper_gap;                     ///< least (s1 - s2) / multiplier that the face keeps in order (MC.8)
 
-  double cutoff_plane;   ///< lambda / (lambda + 2 G) (MC.12)
-  double cutoff_edge;    ///< lambda / (2 lambda + 2 G), Poisson's ratio (MC.13, MC.16)
+  double cutoff_plane;  ///< lambda / (lambda + 2 G) (MC.12)
+  double cutoff_edge;   ///< lambda / (2 lambda + 2 G), Poisson's ratio (MC.13, MC.16)
 
   bool has_cutoff() const { return cutoff < std::numeric_limits<double>::infinity(); }
 
@@ -66,16 +67,16 @@ SLUICE_ALWAYS_INLINE PrincipalStress MohrCoulombReturn::to_shear_surface(Princip
   const double face_yield = yield(trial);
   const double multiplier = face_multiplier * face_yield;
   const double upper = trial.s1 - trial.s2, lower = trial.s2 - trial.s3;
-  const bool outside = (upper < multiplier * extension_gap) | (lower < multiplier * compression_gap);
-  const bool compression = lower * extension_gap < upper * compression_gap;
+  const bool outside = (upper < multiplier * upper_gap) | (lower < multiplier * lower_gap);
+  const bool to_lower_edge = lower * upper_gap < upper * lower_gap;
 
   // On the edge s2 = s3 the two planes act together as one plane on s1 and the mean of s2 and s3 (MC.9); on the edge
   // s1 = s2 likewise (MC.10).
   const double mean_lower = 0.5 * (trial.s2 + trial.s3);
   const double mean_upper = 0.5 * (trial.s1 + trial.s2);
-  const double compression_edge = mean_lower - compression_s3 * yield({trial.s1, mean_lower, mean_lower});
-  const double extension_edge = trial.s3 - extension_s3 * yield({mean_upper, mean_upper, trial.s3});
-  const double edge = compression ? compression_edge : extension_edge;
+  const double lower_edge = mean_lower - lower_edge_s3 * yield({trial.s1, mean_lower, mean_lower});
+  const double upper_edge = trial.s3 - upper_edge_s3 * yield({mean_upper, mean_upper, trial.s3});
+  const double edge = to_lower_edge ? lower_edge : upper_edge;
   const double face = trial.s3 - face_s3 * face_yield;
   const double unlimited = outside ? edge : face;
 
@@ -85,13 +86,14 @@ SLUICE_ALWAYS_INLINE PrincipalStress MohrCoulombReturn::to_shear_surface(Princip
   const double on_surface = yield_slope * s3 + yield_intercept;
   const double s1 = at_apex ? apex : on_surface;
   const double face_middle = trial.s2 - face_s2 * face_yield;
-  const double edge_middle = compression ? s3 : s1;
+  const double edge_middle = to_lower_edge ? s3 : s1;
   const double middle = outside ? edge_middle : face_middle;
   const double below = middle > s1 ? s1 : middle;
   return {s1, below < s3 ? s3 : below, s3};
 }
 
-SLUICE_ALWAYS_INLINE PrincipalStress MohrCoulombReturn::to_cutoff(PrincipalStress trial, PrincipalStress sheared) const {
+SLUICE_ALWAYS_INLINE PrincipalStress MohrCoulombReturn::to_cutoff(PrincipalStress trial,
+                                                                  PrincipalStress sheared) const {
   // Cut-off alone: one, two or three principal stresses at the limit (MC.12 to MC.14).
   const double over1 = trial.s1 - cutoff, over2 = trial.s2 - cutoff;
   const double plane_drop = cutoff_plane * over1, edge_drop = cutoff_edge * (over1 + over2);

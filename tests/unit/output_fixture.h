@@ -64,8 +64,7 @@ inline Particles row_of_particles(std::size_t count, int dimension = 2) {
 inline void set_state(Particles& particles, double time) {
   const auto strain = particles.columns.find("equivalent_plastic_strain");
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    particles.columns.data(particles.position, 0)[i] =
-        particles.columns.data(particles.initial_position, 0)[i] + time;
+    particles.columns.data(particles.position, 0)[i] = particles.columns.data(particles.initial_position, 0)[i] + time;
     particles.columns.data(strain)[i] = particles.id[i] + time;
     particles.columns.data(particles.velocity, 0)[i] = 1;
     particles.columns.data(particles.stress, 3)[i] = -1000 * time;

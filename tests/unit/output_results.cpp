@@ -217,9 +217,9 @@ TEST(Results, KilledRunLeavesReadableResults) {
     if (child == 0) {
       for (int round = 0;; ++round) {
         auto particles = row_of_particles(500);
-        ResultsWriter writer =
-            round == 0 ? ResultsWriter(folder.path(), test::provenance(), particles)
-                       : ResultsWriter(folder.path(), test::provenance(), particles, 4.0 * round - 1.5);
+        ResultsWriter writer = round == 0
+                                   ? ResultsWriter(folder.path(), test::provenance(), particles)
+                                   : ResultsWriter(folder.path(), test::provenance(), particles, 4.0 * round - 1.5);
         write_frames(writer, particles, 4 * round, 4 * round + 3);
         writer.finish();
       }

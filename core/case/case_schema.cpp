@@ -1,0 +1,454 @@
+#include "core/case/case_schema.h"
+
+#include <fmt/format.h>
+
+namespace sluice {
+
+namespace {
+
+const Components dimensions{{2, 3}};
+
+// ---- grid --------------------------------------------------------------------------------------------------------------
+
+void read_cell(GridCase& grid, const Node& node, Problems& problems) {
+  if (node.kind == Node::Kind::list) {
+    if (auto cell = value::quantities(node, "cell", unit::length, above(0), dimensions, problems)) grid.cell = *cell;
+  } else if (const auto cell = value::quantity(node, "cell", unit::length, above(0), problems)) {
+    grid.cell.assign(grid.min.empty() ? 1 : grid.min.size(), *cell);
+  }
+}
+
+Schema<GridCase> grid_schema() {
+  const FieldDoc cell{.name = "cell",
+                      .type = field_type::quantity,
+                      .unit = "m",
+                      .range = "above 0; max - min must be a whole number of cells",
+                      .sentence = "Cell size: one number for all axes, or one for each.",
+                      .required = true,
+                      .alternatives = {{.type = field_type::quantities, .unit = "m"}}};
+  return Schema<GridCase>("grid")
+      .quantities("min", &GridCase::min, unit::length, any_number, dimensions,
+                  "Lower corner; two components make the case plane strain, three make it 3-D. The last axis points up.")
+      .quantities("max", &GridCase::max, unit::length, any_number, dimensions, "Upper corner.")
+      .custom(cell, read_cell, [](const GridCase& grid) { return value::from_quantities(grid.cell, unit::length); });
+}
+
+// ---- regions -----------------------------------------------------------------------------------------------------------
+
+Schema<Box> box_schema() {
+  return Schema<Box>("box")
+      .quantities("min", &Box::min, unit::length, any_number, dimensions, "Lower corner, which belongs to the box.")
+      .quantities("max", &Box::max, unit::length, any_number, dimensions, "Upper corner, which does not.");
+}
+
+Schema<HalfSpace> half_space_schema() {
+  return Schema<HalfSpace>("half_space")
+      .quantities("point", &HalfSpace::point, unit::length, any_number, dimensions, "A point on the surface.")
+      .quantities("normal", &HalfSpace::normal, unit::none, any_number, dimensions,
+                  "Points out of the half-space; of any length but 0.");
+}
+
+void read_box(Region& region, const Node& node, Problems& problems) {
+  static const Schema<Box> schema = box_schema();
+  Box box = schema.read(node, {}, problems);
+  if (box.min.empty() || box.max.empty()) return;  // reported
+  if (box.min.size() != box.max.size()) {
+    problems.add(node.place, fmt::format("box: min has {} components, max has {}", box.min.size(), box.max.size()));
+    return;
+  }
+  for (std::size_t a = 0; a < box.min.size(); ++a)
+    if (!(box.min[a] < box.max[a]))
+      problems.add(node.place, fmt::format("box: component {} of max is {:g} m; it must be above that of min, {:g} m",
+                                           a + 1, box.max[a], box.min[a]));
+  region.parts.emplace_back(std::move(box));
+}
+
+void read_polygon(Region& region, const Node& node, Problems& problems) {
+  if (node.kind != Node::Kind::list || node.items.size() < 3) {
+    problems.add(node.place, fmt::format("polygon: found {}; expected three or more points [[x, z], …], or FILE.yaml#NAME",
+                                         description(node)));
+    return;
+  }
+  Polygon polygon;
+  for (const Node& item : node.items)
+    if (const auto x = value::quantities(item, "point of the polygon", unit::length, any_number, {{2}}, problems))
+      polygon.vertices.push_back({(*x)[0], (*x)[1]});
+  if (polygon.vertices.size() != node.items.size()) return;  // reported
+  if (polygon.area() <= 0) {
+    problems.add(node.place, "polygon: its area is 0");
+    return;
+  }
+  region.parts.emplace_back(std::move(polygon));
+}
+
+void read_half_space(Region& region, const Node& node, Problems& problems) {
+  static const Schema<HalfSpace> schema = half_space_schema();
+  if (node.kind == Node::Kind::list) {
+    for (const Node& item : node.items) read_half_space(region, item, problems);
+    return;
+  }
+  HalfSpace half_space = schema.read(node, {}, problems);
+  if (half_space.point.empty() || half_space.normal.empty()) return;  // reported
+  double length = 0;
+  for (const double n : half_space.normal) length += n * n;
+  if (length <= 0 || half_space.point.size() != half_space.normal.size()) {
+    problems.add(node.place, length <= 0 ? "half_space: its normal is 0" : "half_space: point and normal have different "
+                                                                            "numbers of components");
+    return;
+  }
+  region.parts.emplace_back(std::move(half_space));
+}
+
+template <class Shape>
+std::vector<Shape> shapes_of(const Region& region) {
+  std::vector<Shape> shapes;
+  for (const Primitive& part : region.parts)
+    if (const auto* const shape = std::get_if<Shape>(&part)) shapes.push_back(*shape);
+  return shapes;
+}
+
+Node write_box(const Region& region) {
+  const auto boxes = shapes_of<Box>(region);
+  return boxes.empty() ? Node{} : box_schema().write(boxes.front());
+}
+
+Node write_polygon(const Region& region) {
+  Node points = Node::list();
+  for (const Polygon& polygon : shapes_of<Polygon>(region))
+    for (const auto& [x, z] : polygon.vertices) points.items.push_back(value::from_quantities({x, z}, unit::length));
+  return points.items.empty() ? Node{} : points;
+}
+
+Node write_half_spaces(const Region& region) {
+  Node all = Node::list();
+  for (const HalfSpace& half_space : shapes_of<HalfSpace>(region))
+    all.items.push_back(half_space_schema().write(half_space));
+  if (all.items.size() == 1) return all.items.front();
+  return all.items.empty() ? Node{} : all;
+}
+
+/// Adds the three shapes to the schema of something that has a region; `region_of` gives it, made where there is none.
+template <class T, class Mutable, class Constant>
+Schema<T>& with_shapes(Schema<T>& schema, const Mutable& mutable_region, const Constant& constant_region) {
+  const auto add = [&](FieldDoc doc, void (*read)(Region&, const Node&, Problems&), Node (*write)(const Region&)) {
+    schema.custom(
+        std::move(doc),
+        [=](T& object, const Node& node, Problems& problems) { read(mutable_region(object), node, problems); },
+        [=](const T& object) { return write(constant_region(object)); });
+  };
+  add({.name = "box",
+       .type = field_type::section,
+       .default_text = "none",
+       .sentence = "Axis-aligned box.",
+       .nested = box_schema().docs()},
+      read_box, write_box);
+  add({.name = "polygon",
+       .type = field_type::points,
+       .unit = "m",
+       .range = "three points [x, z] or more",
+       .default_text = "none",
+       .sentence = "Closed polygon in the plane of the first and last axis, in 3-D a prism along the middle axis; or "
+                   "`FILE.yaml#NAME`, a polygon in a file beside this one.",
+       .alternatives = {{.type = field_type::text}}},
+      read_polygon, write_polygon);
+  add({.name = "half_space",
+       .type = field_type::section,
+       .default_text = "none",
+       .sentence = "Everything on one side of a plane; several in a list are intersected.",
+       .nested = half_space_schema().docs(),
+       .alternatives = {{.type = field_type::sections, .nested = half_space_schema().docs()}}},
+      read_half_space, write_half_spaces);
+  return schema;
+}
+
+Schema<Region> region_schema() {
+  Schema<Region> schema("region");
+  return with_shapes(
+      schema, [](Region& region) -> Region& { return region; }, [](const Region& region) -> const Region& { return region; });
+}
+
+// ---- bodies ------------------------------------------------------------------------------------------------------------
+
+Schema<BodyCase> body_schema() {
+  auto schema = Schema<BodyCase>("body");
+  schema.text("material", &BodyCase::material, "Name of one of the materials.")
+      .custom({.name = "particles_per_cell",
+               .type = field_type::integer,
+               .range = "n^2 in 2-D, n^3 in 3-D",
+               .default_text = "4 in 2-D, 8 in 3-D",
+               .sentence = "Material points in each full cell."},
+              [](BodyCase& body, const Node& node, Problems& problems) {
+                const auto n = value::integer(node, "particles_per_cell", from_to(1, 1e6), problems);
+                if (n) body.particles_per_cell = static_cast<int>(*n);
+              },
+              [](const BodyCase& body) { return Node::text(std::to_string(body.particles_per_cell)); })
+      .quantities("velocity", &BodyCase::velocity, unit::velocity, any_number, dimensions, "Initial velocity.",
+                  Absent{"at rest"})
+      .words("replaces", &BodyCase::replaces,
+             "Materials of earlier bodies that this body takes the place of where they overlap; without it an overlap is "
+             "an error.");
+  return with_shapes(
+      schema, [](BodyCase& body) -> Region& { return body.region; },
+      [](const BodyCase& body) -> const Region& { return body.region; });
+}
+
+// ---- boundaries --------------------------------------------------------------------------------------------------------
+
+/// A face as it is written.
+struct FaceKeys {
+  FaceCase::Normal normal = FaceCase::Normal::free;
+  std::optional<std::string> tangential;
+  std::optional<double> friction;
+};
+
+Schema<FaceKeys> face_schema() {
+  using Normal = FaceCase::Normal;
+  return Schema<FaceKeys>("face")
+      .choice<Normal>("normal", &FaceKeys::normal, {{"free", Normal::free}, {"fixed", Normal::fixed}},
+                      "Motion through the face.", Normal::free)
+      .custom({.name = "tangential",
+               .type = field_type::word,
+               .default_text = "free, or friction where a coefficient is given",
+               .sentence = "Motion along the face.",
+               .words = {"free", "fixed", "friction"}},
+              [](FaceKeys& keys, const Node& node, Problems& problems) {
+                keys.tangential = value::word(node, "tangential", {"free", "fixed", "friction"}, problems);
+              },
+              [](const FaceKeys& keys) { return keys.tangential ? Node::text(*keys.tangential) : Node{}; })
+      .quantity("friction", &FaceKeys::friction, unit::none, at_least(0),
+                "Coulomb coefficient of friction; needs `normal: fixed`.");
+}
+
+const std::vector<std::string> face_shorthands{"free", "roller", "fixed"};
+
+FaceCase read_face(const Node& node, const std::string& name, Problems& problems) {
+  using Tangential = FaceCase::Tangential;
+  static const Schema<FaceKeys> schema = face_schema();
+  FaceCase face;
+  if (node.kind == Node::Kind::scalar) {
+    const auto word = value::word(node, "condition of the face " + name, face_shorthands, problems);
+    if (word && *word != "free") face.normal = FaceCase::Normal::fixed;
+    if (word && *word == "fixed") face.tangential = Tangential::fixed;
+    return face;
+  }
+  const FaceKeys keys = schema.read(node, {}, problems);
+  face.normal = keys.normal;
+  if (keys.friction) {
+    const Place place = node.find("friction")->place;
+    face.tangential = Tangential::friction;
+    face.friction = *keys.friction;
+    if (keys.tangential && *keys.tangential != "friction")
+      problems.add(place, fmt::format("boundaries.{}: friction contradicts `tangential: {}`; leave out one of them", name,
+                                      *keys.tangential));
+    if (keys.normal != FaceCase::Normal::fixed)
+      problems.add(place, fmt::format("boundaries.{}: friction needs `normal: fixed`", name));
+  } else if (keys.tangential) {
+    face.tangential = *keys.tangential == "fixed" ? Tangential::fixed : Tangential::free;
+    if (*keys.tangential == "friction" && !node.find("friction"))
+      problems.add(node.find("tangential")->place,
+                   fmt::format("boundaries.{}: `tangential: friction` needs a coefficient, for example friction: 0.4", name));
+  }
+  return face;
+}
+
+void read_faces(Case& definition, const Node& node, Problems& problems) {
+  if (node.kind != Node::Kind::map) {
+    problems.add(node.place, fmt::format("boundaries: found {}; expected faces by name, for example {{bottom: fixed}}",
+                                         description(node)));
+    return;
+  }
+  for (std::size_t i = 0; i < node.items.size(); ++i) {
+    const auto& [name, place] = node.keys[i];
+    // Which of them the grid has is known only when its dimension is.
+    definition.faces[name] = read_face(node.items[i], name, problems);
+  }
+}
+
+Node write_faces(const Case& definition) {
+  Node faces = Node::map();
+  for (const std::string& name : face_words(definition.dimension())) {
+    const auto found = definition.faces.find(name);
+    const FaceCase face = found == definition.faces.end() ? FaceCase{} : found->second;
+    Node keys = Node::map();
+    keys.set("normal", Node::text(face.normal == FaceCase::Normal::fixed ? "fixed" : "free"));
+    if (face.tangential == FaceCase::Tangential::friction)
+      keys.set("friction", value::from_quantity(face.friction, unit::none));
+    else
+      keys.set("tangential", Node::text(face.tangential == FaceCase::Tangential::fixed ? "fixed" : "free"));
+    faces.set(name, keys);
+  }
+  return faces;
+}
+
+// ---- scheme ------------------------------------------------------------------------------------------------------------
+
+void read_time_step(SchemeCase& scheme, const Node& node, Problems& problems) {
+  if (node.kind == Node::Kind::scalar && node.scalar == "computed") return;
+  if (node.kind == Node::Kind::scalar && nearest_word(node.scalar, {"computed"}) == "computed") {
+    value::word(node, "time_step", {"computed"}, problems);
+    return;
+  }
+  scheme.fixed_time_step = value::quantity(node, "time_step", unit::time, above(0), problems);
+}
+
+Schema<SchemeCase> scheme_schema() {
+  using S = SchemeCase;
+  const S defaults;
+  return Schema<S>("scheme")
+      .registered("shape", &S::shape, "shapes", "Shape functions.", defaults.shape)
+      .registered("transfer", &S::transfer, "transfers", "How velocity travels between particles and nodes.",
+                  defaults.transfer)
+      .quantity("flip_fraction", &S::flip_fraction, unit::none, from_to(0, 1),
+                "Share of FLIP in the FLIP/PIC blend of `transfer: flip`; 1 is pure FLIP, 0 is pure PIC.",
+                defaults.flip_fraction)
+      .word("stress_update", &S::stress_update, {"usf", "usl", "musl"},
+            "When the stress is updated: first in the step, last, or last with velocities mapped a second time.",
+            defaults.stress_update)
+      .boolean("f_bar", &S::f_bar, "Average volumetric strain increments over cells, against volumetric locking.",
+               defaults.f_bar)
+      .custom({.name = "time_step",
+               .type = field_type::quantity,
+               .unit = "s",
+               .range = "above 0",
+               .default_text = "computed",
+               .sentence = "Length of the step, or `computed`: anew in every step from the limits below.",
+               .default_value = Node::text("computed"),
+               .alternatives = {{.type = field_type::word, .words = {"computed"}}}},
+              read_time_step,
+              [](const S& scheme) {
+                return scheme.fixed_time_step ? value::from_quantity(*scheme.fixed_time_step, unit::time)
+                                              : Node::text("computed");
+              })
+      .quantity("courant", &S::courant, unit::none, above_to(0, 1),
+                "Wave limit of the computed step: courant h / (c + |v|).", defaults.courant)
+      .quantity("advection", &S::advection, unit::none, above_to(0, 1),
+                "Advection limit: share of a cell that a particle crosses in a step.", defaults.advection)
+      .quantity("strain_per_step", &S::strain_per_step, unit::none, above_to(0, 1),
+                "Strain limit: largest strain increment in a step.", defaults.strain_per_step);
+}
+
+// ---- observations, output ----------------------------------------------------------------------------------------------
+
+Schema<ObservationCase> observation_schema() {
+  return Schema<ObservationCase>("observation")
+      .registered("measure", &ObservationCase::measure, "measures", "What is measured.")
+      .quantities("direction", &ObservationCase::direction, unit::none, any_number, dimensions,
+                  "Direction, for the measures that need one; of any length but 0.", Absent{})
+      .section("region", &ObservationCase::region, region_schema(),
+               "Where the material that is followed lies at the start, for the measures that take a region: one shape, or "
+               "the intersection of several.",
+               Absent{"everything"});
+}
+
+Schema<OutputCase> output_schema() {
+  using O = OutputCase;
+  const O defaults;
+  return Schema<O>("output")
+      .quantity("every", &O::every, unit::time, at_least(0),
+                "Time between the states in results.h5; 0: only the first and the last.", defaults.every)
+      .quantity("history_every", &O::history_every, unit::time, at_least(0),
+                "Time between rows of history.csv and observations.csv; 0: every step.", defaults.history_every)
+      .words("pictures", &O::pictures, "Columns of which pictures are drawn.")
+      .quantities("picture_times", &O::picture_times, unit::time, at_least(0), {}, "Times of the rows of the pictures.",
+                  Absent{"four, evenly spaced"})
+      .quantity("checkpoint_every", &O::checkpoint_every, unit::time, above(0),
+                "Wall-clock time between checkpoints.", defaults.checkpoint_every);
+}
+
+// ---- the case ----------------------------------------------------------------------------------------------------------
+
+void read_materials(Case& definition, const Node& node, Problems& problems) {
+  if (node.kind != Node::Kind::map || node.items.empty()) {
+    problems.add(node.place, fmt::format("materials: found {}; expected materials by name, NAME: {{model: …, …}}",
+                                         node.kind == Node::Kind::map ? "an empty map" : description(node)));
+    return;
+  }
+  for (std::size_t i = 0; i < node.items.size(); ++i) {
+    const auto& name = node.keys[i].first;
+    const Node& section = node.items[i];
+    definition.materials.emplace_back(name, section);
+    if (section.kind != Node::Kind::map)
+      problems.add(section.place, fmt::format("material '{}': found {}; expected a section with a model", name,
+                                              description(section)));
+    else if (const Node* const model = section.find("model"))
+      value::registered(*model, "model", "materials", problems);
+    else
+      problems.add(section.place, fmt::format("material '{}': the key 'model' is missing", name));
+  }
+}
+
+void read_schema_version(const Node& node, Problems& problems) {
+  if (node.kind != Node::Kind::scalar || node.scalar != "1")
+    problems.add(node.place, fmt::format("schema: found {}; this version of the program knows schema 1 only",
+                                         description(node)));
+}
+
+Node write_materials(const Case& definition) {
+  Node materials = Node::map();
+  for (const auto& [name, section] : definition.materials) materials.set(name, section);
+  return materials;
+}
+
+Schema<Case> make_case_schema() {
+  return Schema<Case>("the case")
+      .custom({.name = "schema",
+               .type = field_type::integer,
+               .range = "1",
+               .sentence = "Version of the case-file format.",
+               .required = true},
+              [](Case&, const Node& node, Problems& problems) { read_schema_version(node, problems); },
+              [](const Case&) { return Node::text("1"); })
+      .text("title", &Case::title, "What the case is, in a line.", "untitled")
+      .registered("physics", &Case::physics, "physics", "The physics module.")
+      .section("grid", &Case::grid, grid_schema(), "The background grid: a box of uniform cells.")
+      .quantities("gravity", &Case::gravity, unit::acceleration, any_number, dimensions, "Gravity, in any direction.",
+                  Absent{"zero"})
+      .custom({.name = "materials",
+               .type = field_type::named_sections,
+               .sentence = "Materials by name; `model` names the constitutive model, whose keys are listed under "
+                           "*materials* below.",
+               .required = true},
+              read_materials, write_materials)
+      .sections("bodies", &Case::bodies, body_schema(),
+                "Regions filled with material points: each one shape, or the intersection of several.", true)
+      .custom({.name = "boundaries",
+               .type = field_type::named_sections,
+               .default_text = "every face free",
+               .sentence = "Faces of the grid: left, right, bottom, top, and front, back in 3-D. A word is short for a "
+                           "section: `fixed` fixes all motion, `roller` the normal one, `free` none.",
+               .nested = face_schema().docs(),
+               .alternatives = {{.type = field_type::word, .words = face_shorthands}}},
+              read_faces, write_faces)
+      .custom({.name = "initial_stress",
+               .type = field_type::section,
+               .default_text = "no stress",
+               .sentence = "Stress in the ground before anything moves; read by the physics module."},
+              [](Case& definition, const Node& node, Problems&) { definition.initial_stress = node; },
+              [](const Case& definition) { return definition.initial_stress; })
+      .section("scheme", &Case::scheme, scheme_schema(), "How the equations are discretised.")
+      .choice<OutflowPolicy>("outflow", &Case::outflow,
+                             {{"error", OutflowPolicy::error},
+                              {"remove", OutflowPolicy::remove},
+                              {"clamp", OutflowPolicy::clamp}},
+                             "What happens to a particle that leaves the grid: the run stops, the particle is taken out, or "
+                             "it is put back to the edge.",
+                             OutflowPolicy::error)
+      .quantity("end_time", &Case::end_time, unit::time, above(0), "Time that is simulated.")
+      .named_sections("observe", &Case::observe, observation_schema(),
+                      "Numbers that are followed during the run and written to observations.csv, by name.")
+      .section("output", &Case::output, output_schema(), "What is written, and when.");
+}
+
+}  // namespace
+
+const Schema<Case>& case_schema() {
+  static const Schema<Case> schema = make_case_schema();
+  return schema;
+}
+
+std::vector<std::string> face_words(int dimension) {
+  if (dimension == 2) return {"left", "right", "bottom", "top"};
+  return {"left", "right", "front", "back", "bottom", "top"};
+}
+
+}  // namespace sluice

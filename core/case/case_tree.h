@@ -1,0 +1,22 @@
+/// The tree of a case: a file with those that it extends, overrides applied, polygons of other files put in place.
+#pragma once
+
+#include <vector>
+
+#include "core/case/case.h"
+#include "core/case/problems.h"
+
+namespace sluice {
+
+/// Merges `tree` into the file that its key `extends` names, and that into the next: maps are merged key by key, anything
+/// else is replaced. Each part keeps its place. `file` is the file of `tree`. Throws CaseError.
+Node extended(Node tree, const std::string& file);
+
+/// Sets values along paths such as materials.core.cohesion or bodies.2.velocity; keys that do not exist are made.
+void apply_overrides(const std::vector<Override>& overrides, Node& tree, Problems& problems);
+
+/// Puts polygons in the place of references FILE.yaml#NAME. Files lie beside the file that names them, or beside
+/// `case_file` if an override does.
+void resolve_polygons(Node& tree, const std::string& case_file, Problems& problems);
+
+}  // namespace sluice

@@ -1,0 +1,228 @@
+#include "core/case/consistency.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/case/case_schema.h"
+
+namespace sluice {
+
+namespace {
+
+std::string axis_name(std::size_t axis, std::size_t dimension) {
+  return axis + 1 == dimension ? "z" : axis == 0 ? "x" : "y";
+}
+
+class Consistency {
+ public:
+  Consistency(Case& definition, Problems& problems) : case_(definition), problems_(problems) {}
+
+  void run() {
+    check_materials_of_bodies();
+    const bool has_grid = check_grid();
+    if (!has_grid) return;
+    dimension_ = case_.grid.min.size();
+    check_components(case_.gravity, "gravity", case_.source);
+    check_faces();
+    const Node* const bodies = case_.source.find("bodies");
+    for (std::size_t i = 0; i < case_.bodies.size(); ++i) check_body(case_.bodies[i], bodies->items[i]);
+    check_observations();
+    check_picture_times();
+  }
+
+ private:
+  static Place place_of(const Node& section, const std::string& key) {
+    const Node* const found = section.find(key);
+    return found != nullptr ? found->place : section.place;
+  }
+
+  /// An empty list becomes zero.
+  void check_components(std::vector<double>& values, const std::string& key, const Node& section) {
+    if (values.empty()) values.assign(dimension_, 0.0);
+    if (values.size() == dimension_) return;
+    problems_.add(place_of(section, key), fmt::format("{}: found {} components; the grid has {} dimensions", key,
+                                                      values.size(), dimension_));
+  }
+
+  // ---- grid ----
+
+  bool check_grid() {
+    GridCase& grid = case_.grid;
+    if (grid.min.empty() || grid.max.empty() || grid.cell.empty()) return false;  // reported
+    const Node& section = *case_.source.find("grid");
+    if (grid.min.size() != grid.max.size()) {
+      problems_.add(place_of(section, "max"), fmt::format("grid: min has {} components, max has {}", grid.min.size(),
+                                                          grid.max.size()));
+      return false;
+    }
+    const bool one_for_all = section.find("cell")->kind == Node::Kind::scalar;
+    if (one_for_all) grid.cell.assign(grid.min.size(), grid.cell[0]);
+    if (grid.cell.size() != grid.min.size()) {
+      problems_.add(place_of(section, "cell"), fmt::format("grid: cell has {} components, min has {}", grid.cell.size(),
+                                                           grid.min.size()));
+      return false;
+    }
+    bool good = true;
+    for (std::size_t a = 0; a < grid.min.size(); ++a) good = check_axis(a, section) && good;
+    return good;
+  }
+
+  bool check_axis(std::size_t a, const Node& section) {
+    const GridCase& grid = case_.grid;
+    const double extent = grid.max[a] - grid.min[a], cell = grid.cell[a], cells = extent / cell;
+    const std::string axis = axis_name(a, grid.min.size());
+    const Place place = place_of(section, "max");
+    constexpr double most = 1e6;
+    if (extent <= 0) {
+      problems_.add(place, fmt::format("grid: max is {:g} m along {}; it must be above min, {:g} m", grid.max[a], axis,
+                                       grid.min[a]));
+    } else if (std::abs(cells - std::round(cells)) > 1e-6 || std::round(cells) < 1) {
+      problems_.add(place, fmt::format("grid: the extent along {} is {:g} m, which is {:g} cells of {:g} m; it must be a "
+                                       "whole number of cells, for example {:g} m or {:g} m",
+                                       axis, extent, cells, cell, std::max(std::floor(cells), 1.0) * cell,
+                                       std::max(std::ceil(cells), 1.0) * cell));
+    } else if (cells > most) {
+      problems_.add(place_of(section, "cell"), fmt::format("grid: {:g} cells along {}; at most {:g} are possible", cells,
+                                                           axis, most));
+    } else {
+      return true;
+    }
+    return false;
+  }
+
+  void check_faces() {
+    const auto allowed = face_words(static_cast<int>(dimension_));
+    const Node* const section = case_.source.find("boundaries");
+    if (section != nullptr && section->kind == Node::Kind::map)
+      for (const auto& [name, place] : section->keys)
+        if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
+          problems_.add(place, fmt::format("unknown face '{}' in boundaries; {}", name, allowed_words(name, allowed)));
+    for (const std::string& name : allowed) case_.faces.try_emplace(name);
+  }
+
+  // ---- bodies ----
+
+  void check_materials_of_bodies() {
+    const Node* const bodies = case_.source.find("bodies");
+    std::vector<std::string> names, earlier;
+    for (const auto& [name, section] : case_.materials) names.push_back(name);
+    for (std::size_t i = 0; i < case_.bodies.size(); ++i) {
+      const BodyCase& body = case_.bodies[i];
+      const Node& section = bodies->items[i];
+      const auto known = [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+      if (!body.material.empty() && !names.empty() && !known(body.material))
+        problems_.add(place_of(section, "material"), fmt::format("unknown material '{}'; {}", body.material,
+                                                                 allowed_words(body.material, names)));
+      for (const std::string& name : body.replaces)
+        if (std::find(earlier.begin(), earlier.end(), name) == earlier.end())
+          problems_.add(place_of(section, "replaces"), fmt::format("replaces: '{}' is not the material of an earlier body; {}",
+                                                                   name, allowed_words(name, earlier)));
+      if (std::find(earlier.begin(), earlier.end(), body.material) == earlier.end()) earlier.push_back(body.material);
+    }
+  }
+
+  void check_body(BodyCase& body, const Node& section) {
+    check_components(body.velocity, "velocity", section);
+    check_particles_per_cell(body, section);
+    if (check_shapes(body.region, section, "body")) check_bounds(body);
+  }
+
+  void check_particles_per_cell(BodyCase& body, const Node& section) {
+    const int power = static_cast<int>(dimension_);
+    if (section.find("particles_per_cell") == nullptr) body.particles_per_cell = 1 << power;
+    const int n = static_cast<int>(std::lround(std::pow(body.particles_per_cell, 1.0 / power)));
+    const auto raised = [&](int base) { return dimension_ == 2 ? base * base : base * base * base; };
+    if (raised(n) == body.particles_per_cell) return;
+    const int below = raised(n) < body.particles_per_cell ? n : n - 1;
+    problems_.add(place_of(section, "particles_per_cell"),
+                  fmt::format("particles_per_cell is {}; it must be n^{} in {}-D; nearest: {} and {}",
+                              body.particles_per_cell, power, power, raised(std::max(below, 1)), raised(below + 1)));
+  }
+
+  bool check_shapes(const Region& region, const Node& section, const std::string& what) {
+    const bool named = section.find("box") || section.find("polygon") || section.find("half_space");
+    if (!named && section.kind == Node::Kind::map)
+      problems_.add(section.place, what + ": it has no shape; give one or more of box, polygon, half_space");
+    for (const Primitive& part : region.parts) {
+      std::size_t found = dimension_;
+      std::string shape;
+      if (const auto* const box = std::get_if<Box>(&part)) found = box->min.size(), shape = "box";
+      if (const auto* const half = std::get_if<HalfSpace>(&part)) found = half->point.size(), shape = "half_space";
+      if (found == dimension_) continue;
+      problems_.add(place_of(section, shape), fmt::format("{}: found {} components; the grid has {} dimensions", shape,
+                                                          found, dimension_));
+      return false;
+    }
+    return !region.parts.empty();
+  }
+
+  /// Where the region is bounded, it must end inside the grid; where it is not, the grid ends it.
+  void check_bounds(const BodyCase& body) {
+    const auto bounds = body.region.bounds(static_cast<int>(dimension_));
+    const auto faces = face_words(static_cast<int>(dimension_));
+    for (std::size_t a = 0; a < dimension_; ++a) {
+      const std::string axis = axis_name(a, dimension_);
+      const double low = case_.grid.min[a], high = case_.grid.max[a], tolerance = 1e-9 * (high - low);
+      const double from = bounds[0][a], to = bounds[1][a];
+      const auto complain = [&](double beyond, const std::string& face, double at, double end) {
+        problems_.add(body.place, fmt::format("the body of '{}' reaches {:g} m beyond the {} face of the grid: it extends to "
+                                              "{} = {:g} m, the grid ends at {:g} m",
+                                              body.material, beyond, face, axis, at, end));
+      };
+      if (from >= to) {
+        problems_.add(body.place, fmt::format("the body of '{}' is empty: its shapes have nothing in common along {}",
+                                              body.material, axis));
+      } else if (from >= high || to <= low) {
+        problems_.add(body.place, fmt::format("the body of '{}' lies outside the grid: it extends from {} = {:g} m to {:g} m, "
+                                              "the grid from {:g} m to {:g} m",
+                                              body.material, axis, from, to, low, high));
+      } else {
+        if (std::isfinite(from) && from < low - tolerance) complain(low - from, faces[2 * a], from, low);
+        if (std::isfinite(to) && to > high + tolerance) complain(to - high, faces[2 * a + 1], to, high);
+      }
+    }
+  }
+
+  // ---- observations, output ----
+
+  void check_observations() {
+    for (ObservationCase& observation : case_.observe) {
+      const Node& section = *case_.source.find("observe")->find(observation.name);
+      if (!observation.direction.empty()) normalise(observation, section);
+      if (observation.region) check_shapes(*observation.region, *section.find("region"), "region");
+    }
+  }
+
+  void normalise(ObservationCase& observation, const Node& section) {
+    check_components(observation.direction, "direction", section);
+    double length = 0;
+    for (const double d : observation.direction) length = std::hypot(length, d);
+    if (length == 0) {
+      problems_.add(place_of(section, "direction"), "direction: all components are 0");
+      return;
+    }
+    // A unit vector stays as it is to the last bit, so that a resolved case reads back as the same case.
+    if (std::abs(length - 1) > 1e-14)
+      for (double& d : observation.direction) d /= length;
+  }
+
+  void check_picture_times() {
+    const Node* const output = case_.source.find("output");
+    for (const double time : case_.output.picture_times)
+      if (case_.end_time > 0 && time > case_.end_time)
+        problems_.add(place_of(*output, "picture_times"), fmt::format("picture_times: {:g} s is after the end_time, {:g} s",
+                                                                      time, case_.end_time));
+  }
+
+  Case& case_;
+  Problems& problems_;
+  std::size_t dimension_ = 0;
+};
+
+}  // namespace
+
+void complete_and_check(Case& definition, Problems& problems) { Consistency(definition, problems).run(); }
+
+}  // namespace sluice

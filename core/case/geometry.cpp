@@ -1,0 +1,153 @@
+#include "core/case/geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sluice {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+using Bounds = std::array<std::vector<double>, 2>;
+
+Bounds everywhere(std::size_t dimension) {
+  return {std::vector<double>(dimension, -infinity), std::vector<double>(dimension, infinity)};
+}
+
+// ---- box ---------------------------------------------------------------------------------------------------------------
+
+bool contains(const Box& box, std::span<const double> x) {
+  for (std::size_t a = 0; a < x.size(); ++a)
+    if (!(box.min[a] <= x[a] && x[a] < box.max[a])) return false;
+  return true;
+}
+
+double distance(const Box& box, std::span<const double> x) {
+  double outside = 0, inside = infinity;
+  for (std::size_t a = 0; a < x.size(); ++a) {
+    const double depth = std::min(x[a] - box.min[a], box.max[a] - x[a]);
+    inside = std::min(inside, depth);
+    if (depth < 0) outside += depth * depth;
+  }
+  return inside < 0 ? std::sqrt(outside) : inside;
+}
+
+Bounds bounds_of(const Box& box, std::size_t) { return {box.min, box.max}; }
+
+// ---- polygon -----------------------------------------------------------------------------------------------------------
+
+/// Calls visit(a, b) for every edge.
+template <class Visit>
+void for_edges(const Polygon& polygon, const Visit& visit) {
+  for (std::size_t i = 0, j = polygon.vertices.size() - 1; i < polygon.vertices.size(); j = i++)
+    visit(polygon.vertices[j], polygon.vertices[i]);
+}
+
+/// Even-odd rule: counts the edges that a ray to the right of the point crosses. Edges hold their lower end only, and are
+/// always walked upwards, so that polygons on both sides of an edge compute the very same numbers for it.
+bool contains(const Polygon& polygon, std::span<const double> x) {
+  const double px = x.front(), pz = x.back();
+  bool inside = false;
+  for_edges(polygon, [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
+    const auto& low = a[1] <= b[1] ? a : b;
+    const auto& high = a[1] <= b[1] ? b : a;
+    if (!(low[1] <= pz && pz < high[1])) return;
+    const double side = (high[0] - low[0]) * (pz - low[1]) - (high[1] - low[1]) * (px - low[0]);
+    if (side > 0) inside = !inside;
+  });
+  return inside;
+}
+
+double distance(const Polygon& polygon, std::span<const double> x) {
+  double least = infinity;
+  for_edges(polygon, [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
+    const double ex = b[0] - a[0], ez = b[1] - a[1], dx = x.front() - a[0], dz = x.back() - a[1];
+    const double length2 = ex * ex + ez * ez;
+    const double t = length2 > 0 ? std::clamp((ex * dx + ez * dz) / length2, 0.0, 1.0) : 0.0;
+    least = std::min(least, std::hypot(dx - t * ex, dz - t * ez));
+  });
+  return least;
+}
+
+Bounds bounds_of(const Polygon& polygon, std::size_t dimension) {
+  Bounds bounds = everywhere(dimension);
+  for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {
+    const auto [low, high] = std::minmax_element(polygon.vertices.begin(), polygon.vertices.end(),
+                                                 [c](const auto& a, const auto& b) { return a[c] < b[c]; });
+    const std::size_t axis = c == 0 ? 0 : dimension - 1;
+    bounds[0][axis] = (*low)[c];
+    bounds[1][axis] = (*high)[c];
+  }
+  return bounds;
+}
+
+// ---- half-space --------------------------------------------------------------------------------------------------------
+
+/// normal · (x - point)
+double height(const HalfSpace& half_space, std::span<const double> x) {
+  double sum = 0;
+  for (std::size_t a = 0; a < x.size(); ++a) sum += half_space.normal[a] * (x[a] - half_space.point[a]);
+  return sum;
+}
+
+bool contains(const HalfSpace& half_space, std::span<const double> x) { return height(half_space, x) <= 0; }
+
+double distance(const HalfSpace& half_space, std::span<const double> x) {
+  double length2 = 0;
+  for (const double n : half_space.normal) length2 += n * n;
+  return std::abs(height(half_space, x)) / std::sqrt(length2);
+}
+
+/// Bounded on one side of one axis if the normal is parallel to that axis.
+Bounds bounds_of(const HalfSpace& half_space, std::size_t dimension) {
+  Bounds bounds = everywhere(dimension);
+  std::size_t axis = dimension, components = 0;
+  for (std::size_t a = 0; a < dimension; ++a) {
+    if (half_space.normal[a] == 0) continue;
+    axis = a;
+    ++components;
+  }
+  if (components == 1) bounds[half_space.normal[axis] > 0 ? 1 : 0][axis] = half_space.point[axis];
+  return bounds;
+}
+
+}  // namespace
+
+double Polygon::area() const {
+  double twice = 0;
+  // From the first vertex: far from the origin the products would cancel.
+  const auto& o = vertices.front();
+  for_edges(*this, [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
+    twice += (a[0] - o[0]) * (b[1] - o[1]) - (b[0] - o[0]) * (a[1] - o[1]);
+  });
+  return std::abs(twice) / 2;
+}
+
+bool Region::contains(std::span<const double> x) const {
+  return std::all_of(parts.begin(), parts.end(), [&](const Primitive& part) {
+    return std::visit([&](const auto& shape) { return sluice::contains(shape, x); }, part);
+  });
+}
+
+double Region::distance_to_surface(std::span<const double> x) const {
+  double least = infinity;
+  for (const Primitive& part : parts)
+    least = std::min(least, std::visit([&](const auto& shape) { return distance(shape, x); }, part));
+  return least;
+}
+
+std::array<std::vector<double>, 2> Region::bounds(int dimension) const {
+  const auto n = static_cast<std::size_t>(dimension);
+  Bounds all = everywhere(n);
+  for (const Primitive& part : parts) {
+    const Bounds bounds = std::visit([&](const auto& shape) { return bounds_of(shape, n); }, part);
+    for (std::size_t a = 0; a < n; ++a) {
+      all[0][a] = std::max(all[0][a], bounds[0][a]);
+      all[1][a] = std::min(all[1][a], bounds[1][a]);
+    }
+  }
+  return all;
+}
+
+}  // namespace sluice

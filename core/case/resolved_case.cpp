@@ -1,0 +1,32 @@
+#include "core/case/resolved_case.h"
+
+#include "core/case/case_schema.h"
+#include "core/case/registry.h"
+
+namespace sluice {
+
+namespace {
+
+/// Adds the defaults of the material's model, as its catalogue entry declares them.
+void fill_in(Node& material) {
+  const auto catalogue = Catalogue::all().find("materials");
+  const Node* const model = material.find("model");
+  if (catalogue == Catalogue::all().end() || model == nullptr) return;
+  const auto entry = catalogue->second->entries().find(model->scalar);
+  if (entry == catalogue->second->entries().end() || !entry->second.keys) return;
+  for (const FieldDoc& doc : entry->second.keys())
+    if (doc.default_value && material.find(doc.name) == nullptr) material.set(doc.name, doc.default_value);
+}
+
+}  // namespace
+
+std::string resolved_yaml(const Case& definition, const std::vector<std::pair<std::string, Node>>& sections) {
+  Node whole = case_schema().write(definition);
+  for (const auto& [name, section] : sections)
+    if (section) whole.set(name, section);
+  if (Node* const materials = whole.find("materials"))
+    for (Node& material : materials->items) fill_in(material);
+  return yaml_text(whole);
+}
+
+}  // namespace sluice
