@@ -70,11 +70,11 @@ struct OutputCase {
 };
 
 struct Case {
-  std::string file;   ///< as named by the user
+  std::string file;  ///< as named by the user
   std::string title;
   std::string physics;
   GridCase grid;
-  std::vector<double> gravity;  ///< [m/s2], Dim components
+  std::vector<double> gravity;                          ///< [m/s2], Dim components
   std::vector<std::pair<std::string, Node>> materials;  ///< in file order; read by the physics module
   std::vector<BodyCase> bodies;
   std::map<std::string, FaceCase> faces;  ///< left right bottom top (front back in 3-D)

@@ -8,7 +8,8 @@ namespace {
 
 const Components dimensions{{2, 3}};
 
-// ---- grid --------------------------------------------------------------------------------------------------------------
+// ---- grid
+// --------------------------------------------------------------------------------------------------------------
 
 void read_cell(GridCase& grid, const Node& node, Problems& problems) {
   if (node.kind == Node::Kind::list) {
@@ -27,13 +28,15 @@ Schema<GridCase> grid_schema() {
                       .required = true,
                       .alternatives = {{.type = field_type::quantities, .unit = "m"}}};
   return Schema<GridCase>("grid")
-      .quantities("min", &GridCase::min, unit::length, any_number, dimensions,
-                  "Lower corner; two components make the case plane strain, three make it 3-D. The last axis points up.")
+      .quantities(
+          "min", &GridCase::min, unit::length, any_number, dimensions,
+          "Lower corner; two components make the case plane strain, three make it 3-D. The last axis points up.")
       .quantities("max", &GridCase::max, unit::length, any_number, dimensions, "Upper corner.")
       .custom(cell, read_cell, [](const GridCase& grid) { return value::from_quantities(grid.cell, unit::length); });
 }
 
-// ---- regions -----------------------------------------------------------------------------------------------------------
+// ---- regions
+// -----------------------------------------------------------------------------------------------------------
 
 Schema<Box> box_schema() {
   return Schema<Box>("box")
@@ -56,17 +59,21 @@ void read_box(Region& region, const Node& node, Problems& problems) {
     problems.add(node.place, fmt::format("box: min has {} components, max has {}", box.min.size(), box.max.size()));
     return;
   }
-  for (std::size_t a = 0; a < box.min.size(); ++a)
-    if (!(box.min[a] < box.max[a]))
-      problems.add(node.place, fmt::format("box: component {} of max is {:g} m; it must be above that of min, {:g} m",
-                                           a + 1, box.max[a], box.min[a]));
-  region.parts.emplace_back(std::move(box));
+  bool filled = true;
+  for (std::size_t a = 0; a < box.min.size(); ++a) {
+    if (box.min[a] < box.max[a]) continue;
+    filled = false;
+    problems.add(node.place, fmt::format("box: component {} of max is {:g} m; it must be above that of min, {:g} m",
+                                         a + 1, box.max[a], box.min[a]));
+  }
+  if (filled) region.parts.emplace_back(std::move(box));
 }
 
 void read_polygon(Region& region, const Node& node, Problems& problems) {
   if (node.kind != Node::Kind::list || node.items.size() < 3) {
-    problems.add(node.place, fmt::format("polygon: found {}; expected three or more points [[x, z], …], or FILE.yaml#NAME",
-                                         description(node)));
+    problems.add(node.place,
+                 fmt::format("polygon: found {}; expected three or more points [[x, z], …], or FILE.yaml#NAME",
+                             description(node)));
     return;
   }
   Polygon polygon;
@@ -92,8 +99,9 @@ void read_half_space(Region& region, const Node& node, Problems& problems) {
   double length = 0;
   for (const double n : half_space.normal) length += n * n;
   if (length <= 0 || half_space.point.size() != half_space.normal.size()) {
-    problems.add(node.place, length <= 0 ? "half_space: its normal is 0" : "half_space: point and normal have different "
-                                                                            "numbers of components");
+    problems.add(node.place, length <= 0 ? "half_space: its normal is 0"
+                                         : "half_space: point and normal have different "
+                                           "numbers of components");
     return;
   }
   region.parts.emplace_back(std::move(half_space));
@@ -164,35 +172,40 @@ Schema<T>& with_shapes(Schema<T>& schema, const Mutable& mutable_region, const C
 Schema<Region> region_schema() {
   Schema<Region> schema("region");
   return with_shapes(
-      schema, [](Region& region) -> Region& { return region; }, [](const Region& region) -> const Region& { return region; });
+      schema, [](Region& region) -> Region& { return region; },
+      [](const Region& region) -> const Region& { return region; });
 }
 
-// ---- bodies ------------------------------------------------------------------------------------------------------------
+// ---- bodies
+// ------------------------------------------------------------------------------------------------------------
 
 Schema<BodyCase> body_schema() {
   auto schema = Schema<BodyCase>("body");
   schema.text("material", &BodyCase::material, "Name of one of the materials.")
-      .custom({.name = "particles_per_cell",
-               .type = field_type::integer,
-               .range = "n^2 in 2-D, n^3 in 3-D",
-               .default_text = "4 in 2-D, 8 in 3-D",
-               .sentence = "Material points in each full cell."},
-              [](BodyCase& body, const Node& node, Problems& problems) {
-                const auto n = value::integer(node, "particles_per_cell", from_to(1, 1e6), problems);
-                if (n) body.particles_per_cell = static_cast<int>(*n);
-              },
-              [](const BodyCase& body) { return Node::text(std::to_string(body.particles_per_cell)); })
+      .custom(
+          {.name = "particles_per_cell",
+           .type = field_type::integer,
+           .range = "n^2 in 2-D, n^3 in 3-D",
+           .default_text = "4 in 2-D, 8 in 3-D",
+           .sentence = "Material points in each full cell."},
+          [](BodyCase& body, const Node& node, Problems& problems) {
+            const auto n = value::integer(node, "particles_per_cell", from_to(1, 1e6), problems);
+            if (n) body.particles_per_cell = static_cast<int>(*n);
+          },
+          [](const BodyCase& body) { return Node::text(std::to_string(body.particles_per_cell)); })
       .quantities("velocity", &BodyCase::velocity, unit::velocity, any_number, dimensions, "Initial velocity.",
                   Absent{"at rest"})
-      .words("replaces", &BodyCase::replaces,
-             "Materials of earlier bodies that this body takes the place of where they overlap; without it an overlap is "
-             "an error.");
+      .words(
+          "replaces", &BodyCase::replaces,
+          "Materials of earlier bodies that this body takes the place of where they overlap; without it an overlap is "
+          "an error.");
   return with_shapes(
       schema, [](BodyCase& body) -> Region& { return body.region; },
       [](const BodyCase& body) -> const Region& { return body.region; });
 }
 
-// ---- boundaries --------------------------------------------------------------------------------------------------------
+// ---- boundaries
+// --------------------------------------------------------------------------------------------------------
 
 /// A face as it is written.
 struct FaceKeys {
@@ -206,15 +219,16 @@ Schema<FaceKeys> face_schema() {
   return Schema<FaceKeys>("face")
       .choice<Normal>("normal", &FaceKeys::normal, {{"free", Normal::free}, {"fixed", Normal::fixed}},
                       "Motion through the face.", Normal::free)
-      .custom({.name = "tangential",
-               .type = field_type::word,
-               .default_text = "free, or friction where a coefficient is given",
-               .sentence = "Motion along the face.",
-               .words = {"free", "fixed", "friction"}},
-              [](FaceKeys& keys, const Node& node, Problems& problems) {
-                keys.tangential = value::word(node, "tangential", {"free", "fixed", "friction"}, problems);
-              },
-              [](const FaceKeys& keys) { return keys.tangential ? Node::text(*keys.tangential) : Node{}; })
+      .custom(
+          {.name = "tangential",
+           .type = field_type::word,
+           .default_text = "free, or friction where a coefficient is given",
+           .sentence = "Motion along the face.",
+           .words = {"free", "fixed", "friction"}},
+          [](FaceKeys& keys, const Node& node, Problems& problems) {
+            keys.tangential = value::word(node, "tangential", {"free", "fixed", "friction"}, problems);
+          },
+          [](const FaceKeys& keys) { return keys.tangential ? Node::text(*keys.tangential) : Node{}; })
       .quantity("friction", &FaceKeys::friction, unit::none, at_least(0),
                 "Coulomb coefficient of friction; needs `normal: fixed`.");
 }
@@ -226,7 +240,7 @@ FaceCase read_face(const Node& node, const std::string& name, Problems& problems
   static const Schema<FaceKeys> schema = face_schema();
   FaceCase face;
   if (node.kind == Node::Kind::scalar) {
-    const auto word = value::word(node, "condition of the face " + name, face_shorthands, problems);
+    const auto word = value::word(node, "boundaries." + name, face_shorthands, problems);
     if (word && *word != "free") face.normal = FaceCase::Normal::fixed;
     if (word && *word == "fixed") face.tangential = Tangential::fixed;
     return face;
@@ -238,15 +252,16 @@ FaceCase read_face(const Node& node, const std::string& name, Problems& problems
     face.tangential = Tangential::friction;
     face.friction = *keys.friction;
     if (keys.tangential && *keys.tangential != "friction")
-      problems.add(place, fmt::format("boundaries.{}: friction contradicts `tangential: {}`; leave out one of them", name,
-                                      *keys.tangential));
+      problems.add(place, fmt::format("boundaries.{}: friction contradicts `tangential: {}`; leave out one of them",
+                                      name, *keys.tangential));
     if (keys.normal != FaceCase::Normal::fixed)
       problems.add(place, fmt::format("boundaries.{}: friction needs `normal: fixed`", name));
   } else if (keys.tangential) {
     face.tangential = *keys.tangential == "fixed" ? Tangential::fixed : Tangential::free;
     if (*keys.tangential == "friction" && !node.find("friction"))
-      problems.add(node.find("tangential")->place,
-                   fmt::format("boundaries.{}: `tangential: friction` needs a coefficient, for example friction: 0.4", name));
+      problems.add(
+          node.find("tangential")->place,
+          fmt::format("boundaries.{}: `tangential: friction` needs a coefficient, for example friction: 0.4", name));
   }
   return face;
 }
@@ -280,7 +295,8 @@ Node write_faces(const Case& definition) {
   return faces;
 }
 
-// ---- scheme ------------------------------------------------------------------------------------------------------------
+// ---- scheme
+// ------------------------------------------------------------------------------------------------------------
 
 void read_time_step(SchemeCase& scheme, const Node& node, Problems& problems) {
   if (node.kind == Node::Kind::scalar && node.scalar == "computed") return;
@@ -320,24 +336,26 @@ Schema<SchemeCase> scheme_schema() {
                                               : Node::text("computed");
               })
       .quantity("courant", &S::courant, unit::none, above_to(0, 1),
-                "Wave limit of the computed step: courant h / (c + |v|).", defaults.courant)
+                "Wave limit of the computed step: courant h / (c + speed).", defaults.courant)
       .quantity("advection", &S::advection, unit::none, above_to(0, 1),
                 "Advection limit: share of a cell that a particle crosses in a step.", defaults.advection)
       .quantity("strain_per_step", &S::strain_per_step, unit::none, above_to(0, 1),
                 "Strain limit: largest strain increment in a step.", defaults.strain_per_step);
 }
 
-// ---- observations, output ----------------------------------------------------------------------------------------------
+// ---- observations, output
+// ----------------------------------------------------------------------------------------------
 
 Schema<ObservationCase> observation_schema() {
   return Schema<ObservationCase>("observation")
       .registered("measure", &ObservationCase::measure, "measures", "What is measured.")
       .quantities("direction", &ObservationCase::direction, unit::none, any_number, dimensions,
                   "Direction, for the measures that need one; of any length but 0.", Absent{})
-      .section("region", &ObservationCase::region, region_schema(),
-               "Where the material that is followed lies at the start, for the measures that take a region: one shape, or "
-               "the intersection of several.",
-               Absent{"everything"});
+      .section(
+          "region", &ObservationCase::region, region_schema(),
+          "Where the material that is followed lies at the start, for the measures that take a region: one shape, or "
+          "the intersection of several.",
+          Absent{"everything"});
 }
 
 Schema<OutputCase> output_schema() {
@@ -351,11 +369,12 @@ Schema<OutputCase> output_schema() {
       .words("pictures", &O::pictures, "Columns of which pictures are drawn.")
       .quantities("picture_times", &O::picture_times, unit::time, at_least(0), {}, "Times of the rows of the pictures.",
                   Absent{"four, evenly spaced"})
-      .quantity("checkpoint_every", &O::checkpoint_every, unit::time, above(0),
-                "Wall-clock time between checkpoints.", defaults.checkpoint_every);
+      .quantity("checkpoint_every", &O::checkpoint_every, unit::time, above(0), "Wall-clock time between checkpoints.",
+                defaults.checkpoint_every);
 }
 
-// ---- the case ----------------------------------------------------------------------------------------------------------
+// ---- the case
+// ----------------------------------------------------------------------------------------------------------
 
 void read_materials(Case& definition, const Node& node, Problems& problems) {
   if (node.kind != Node::Kind::map || node.items.empty()) {
@@ -368,8 +387,8 @@ void read_materials(Case& definition, const Node& node, Problems& problems) {
     const Node& section = node.items[i];
     definition.materials.emplace_back(name, section);
     if (section.kind != Node::Kind::map)
-      problems.add(section.place, fmt::format("material '{}': found {}; expected a section with a model", name,
-                                              description(section)));
+      problems.add(section.place,
+                   fmt::format("material '{}': found {}; expected a section with a model", name, description(section)));
     else if (const Node* const model = section.find("model"))
       value::registered(*model, "model", "materials", problems);
     else
@@ -379,8 +398,8 @@ void read_materials(Case& definition, const Node& node, Problems& problems) {
 
 void read_schema_version(const Node& node, Problems& problems) {
   if (node.kind != Node::Kind::scalar || node.scalar != "1")
-    problems.add(node.place, fmt::format("schema: found {}; this version of the program knows schema 1 only",
-                                         description(node)));
+    problems.add(node.place,
+                 fmt::format("schema: found {}; this version of the program knows schema 1 only", description(node)));
 }
 
 Node write_materials(const Case& definition) {
@@ -391,13 +410,14 @@ Node write_materials(const Case& definition) {
 
 Schema<Case> make_case_schema() {
   return Schema<Case>("the case")
-      .custom({.name = "schema",
-               .type = field_type::integer,
-               .range = "1",
-               .sentence = "Version of the case-file format.",
-               .required = true},
-              [](Case&, const Node& node, Problems& problems) { read_schema_version(node, problems); },
-              [](const Case&) { return Node::text("1"); })
+      .custom(
+          {.name = "schema",
+           .type = field_type::integer,
+           .range = "1",
+           .sentence = "Version of the case-file format.",
+           .required = true},
+          [](Case&, const Node& node, Problems& problems) { read_schema_version(node, problems); },
+          [](const Case&) { return Node::text("1"); })
       .text("title", &Case::title, "What the case is, in a line.", "untitled")
       .registered("physics", &Case::physics, "physics", "The physics module.")
       .section("grid", &Case::grid, grid_schema(), "The background grid: a box of uniform cells.")
@@ -419,20 +439,20 @@ Schema<Case> make_case_schema() {
                .nested = face_schema().docs(),
                .alternatives = {{.type = field_type::word, .words = face_shorthands}}},
               read_faces, write_faces)
-      .custom({.name = "initial_stress",
-               .type = field_type::section,
-               .default_text = "no stress",
-               .sentence = "Stress in the ground before anything moves; read by the physics module."},
-              [](Case& definition, const Node& node, Problems&) { definition.initial_stress = node; },
-              [](const Case& definition) { return definition.initial_stress; })
+      .custom(
+          {.name = "initial_stress",
+           .type = field_type::section,
+           .default_text = "no stress",
+           .sentence = "Stress in the ground before anything moves; read by the physics module."},
+          [](Case& definition, const Node& node, Problems&) { definition.initial_stress = node; },
+          [](const Case& definition) { return definition.initial_stress; })
       .section("scheme", &Case::scheme, scheme_schema(), "How the equations are discretised.")
-      .choice<OutflowPolicy>("outflow", &Case::outflow,
-                             {{"error", OutflowPolicy::error},
-                              {"remove", OutflowPolicy::remove},
-                              {"clamp", OutflowPolicy::clamp}},
-                             "What happens to a particle that leaves the grid: the run stops, the particle is taken out, or "
-                             "it is put back to the edge.",
-                             OutflowPolicy::error)
+      .choice<OutflowPolicy>(
+          "outflow", &Case::outflow,
+          {{"error", OutflowPolicy::error}, {"remove", OutflowPolicy::remove}, {"clamp", OutflowPolicy::clamp}},
+          "What happens to a particle that leaves the grid: the run stops, the particle is taken out, or "
+          "it is put back to the edge.",
+          OutflowPolicy::error)
       .quantity("end_time", &Case::end_time, unit::time, above(0), "Time that is simulated.")
       .named_sections("observe", &Case::observe, observation_schema(),
                       "Numbers that are followed during the run and written to observations.csv, by name.")

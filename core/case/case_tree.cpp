@@ -158,8 +158,8 @@ class PolygonFiles {
     if (found == nullptr) {
       std::vector<std::string> names;
       for (const auto& [key, place] : file.keys) names.push_back(key);
-      throw CaseError(reference.place, fmt::format("polygon: '{}' has no '{}'; {}", reference.scalar.substr(0, hash), name,
-                                                   allowed_words(name, names)));
+      throw CaseError(reference.place, fmt::format("polygon: '{}' has no '{}'; {}", reference.scalar.substr(0, hash),
+                                                   name, allowed_words(name, names)));
     }
     const Node* const inner = found->find("polygon");
     return inner != nullptr ? *inner : *found;

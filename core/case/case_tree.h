@@ -8,8 +8,8 @@
 
 namespace sluice {
 
-/// Merges `tree` into the file that its key `extends` names, and that into the next: maps are merged key by key, anything
-/// else is replaced. Each part keeps its place. `file` is the file of `tree`. Throws CaseError.
+/// Merges `tree` into the file that its key `extends` names, and that into the next: maps are merged key by key,
+/// anything else is replaced. Each part keeps its place. `file` is the file of `tree`. Throws CaseError.
 Node extended(Node tree, const std::string& file);
 
 /// Sets values along paths such as materials.core.cohesion or bodies.2.velocity; keys that do not exist are made.

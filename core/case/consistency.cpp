@@ -42,8 +42,8 @@ class Consistency {
   void check_components(std::vector<double>& values, const std::string& key, const Node& section) {
     if (values.empty()) values.assign(dimension_, 0.0);
     if (values.size() == dimension_) return;
-    problems_.add(place_of(section, key), fmt::format("{}: found {} components; the grid has {} dimensions", key,
-                                                      values.size(), dimension_));
+    problems_.add(place_of(section, key),
+                  fmt::format("{}: found {} components; the grid has {} dimensions", key, values.size(), dimension_));
   }
 
   // ---- grid ----
@@ -53,15 +53,15 @@ class Consistency {
     if (grid.min.empty() || grid.max.empty() || grid.cell.empty()) return false;  // reported
     const Node& section = *case_.source.find("grid");
     if (grid.min.size() != grid.max.size()) {
-      problems_.add(place_of(section, "max"), fmt::format("grid: min has {} components, max has {}", grid.min.size(),
-                                                          grid.max.size()));
+      problems_.add(place_of(section, "max"),
+                    fmt::format("grid: min has {} components, max has {}", grid.min.size(), grid.max.size()));
       return false;
     }
     const bool one_for_all = section.find("cell")->kind == Node::Kind::scalar;
     if (one_for_all) grid.cell.assign(grid.min.size(), grid.cell[0]);
     if (grid.cell.size() != grid.min.size()) {
-      problems_.add(place_of(section, "cell"), fmt::format("grid: cell has {} components, min has {}", grid.cell.size(),
-                                                           grid.min.size()));
+      problems_.add(place_of(section, "cell"),
+                    fmt::format("grid: cell has {} components, min has {}", grid.cell.size(), grid.min.size()));
       return false;
     }
     bool good = true;
@@ -79,13 +79,14 @@ class Consistency {
       problems_.add(place, fmt::format("grid: max is {:g} m along {}; it must be above min, {:g} m", grid.max[a], axis,
                                        grid.min[a]));
     } else if (std::abs(cells - std::round(cells)) > 1e-6 || std::round(cells) < 1) {
-      problems_.add(place, fmt::format("grid: the extent along {} is {:g} m, which is {:g} cells of {:g} m; it must be a "
-                                       "whole number of cells, for example {:g} m or {:g} m",
-                                       axis, extent, cells, cell, std::max(std::floor(cells), 1.0) * cell,
-                                       std::max(std::ceil(cells), 1.0) * cell));
+      problems_.add(place,
+                    fmt::format("grid: the extent along {} is {:g} m, which is {:g} cells of {:g} m; it must be a "
+                                "whole number of cells, for example {:g} m or {:g} m",
+                                axis, extent, cells, cell, std::max(std::floor(cells), 1.0) * cell,
+                                std::max(std::ceil(cells), 1.0) * cell));
     } else if (cells > most) {
-      problems_.add(place_of(section, "cell"), fmt::format("grid: {:g} cells along {}; at most {:g} are possible", cells,
-                                                           axis, most));
+      problems_.add(place_of(section, "cell"),
+                    fmt::format("grid: {:g} cells along {}; at most {:g} are possible", cells, axis, most));
     } else {
       return true;
     }
@@ -111,14 +112,17 @@ class Consistency {
     for (std::size_t i = 0; i < case_.bodies.size(); ++i) {
       const BodyCase& body = case_.bodies[i];
       const Node& section = bodies->items[i];
-      const auto known = [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+      const auto known = [&](const std::string& name) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+      };
       if (!body.material.empty() && !names.empty() && !known(body.material))
-        problems_.add(place_of(section, "material"), fmt::format("unknown material '{}'; {}", body.material,
-                                                                 allowed_words(body.material, names)));
+        problems_.add(place_of(section, "material"),
+                      fmt::format("unknown material '{}'; {}", body.material, allowed_words(body.material, names)));
       for (const std::string& name : body.replaces)
         if (std::find(earlier.begin(), earlier.end(), name) == earlier.end())
-          problems_.add(place_of(section, "replaces"), fmt::format("replaces: '{}' is not the material of an earlier body; {}",
-                                                                   name, allowed_words(name, earlier)));
+          problems_.add(place_of(section, "replaces"),
+                        fmt::format("replaces: '{}' is not the material of an earlier body; {}", name,
+                                    allowed_words(name, earlier)));
       if (std::find(earlier.begin(), earlier.end(), body.material) == earlier.end()) earlier.push_back(body.material);
     }
   }
@@ -151,8 +155,8 @@ class Consistency {
       if (const auto* const box = std::get_if<Box>(&part)) found = box->min.size(), shape = "box";
       if (const auto* const half = std::get_if<HalfSpace>(&part)) found = half->point.size(), shape = "half_space";
       if (found == dimension_) continue;
-      problems_.add(place_of(section, shape), fmt::format("{}: found {} components; the grid has {} dimensions", shape,
-                                                          found, dimension_));
+      problems_.add(place_of(section, shape),
+                    fmt::format("{}: found {} components; the grid has {} dimensions", shape, found, dimension_));
       return false;
     }
     return !region.parts.empty();
@@ -167,17 +171,19 @@ class Consistency {
       const double low = case_.grid.min[a], high = case_.grid.max[a], tolerance = 1e-9 * (high - low);
       const double from = bounds[0][a], to = bounds[1][a];
       const auto complain = [&](double beyond, const std::string& face, double at, double end) {
-        problems_.add(body.place, fmt::format("the body of '{}' reaches {:g} m beyond the {} face of the grid: it extends to "
-                                              "{} = {:g} m, the grid ends at {:g} m",
-                                              body.material, beyond, face, axis, at, end));
+        problems_.add(body.place,
+                      fmt::format("the body of '{}' reaches {:g} m beyond the {} face of the grid: it extends to "
+                                  "{} = {:g} m, the grid ends at {:g} m",
+                                  body.material, beyond, face, axis, at, end));
       };
       if (from >= to) {
         problems_.add(body.place, fmt::format("the body of '{}' is empty: its shapes have nothing in common along {}",
                                               body.material, axis));
       } else if (from >= high || to <= low) {
-        problems_.add(body.place, fmt::format("the body of '{}' lies outside the grid: it extends from {} = {:g} m to {:g} m, "
-                                              "the grid from {:g} m to {:g} m",
-                                              body.material, axis, from, to, low, high));
+        problems_.add(body.place,
+                      fmt::format("the body of '{}' lies outside the grid: it extends from {} = {:g} m to {:g} m, "
+                                  "the grid from {:g} m to {:g} m",
+                                  body.material, axis, from, to, low, high));
       } else {
         if (std::isfinite(from) && from < low - tolerance) complain(low - from, faces[2 * a], from, low);
         if (std::isfinite(to) && to > high + tolerance) complain(to - high, faces[2 * a + 1], to, high);
@@ -212,8 +218,8 @@ class Consistency {
     const Node* const output = case_.source.find("output");
     for (const double time : case_.output.picture_times)
       if (case_.end_time > 0 && time > case_.end_time)
-        problems_.add(place_of(*output, "picture_times"), fmt::format("picture_times: {:g} s is after the end_time, {:g} s",
-                                                                      time, case_.end_time));
+        problems_.add(place_of(*output, "picture_times"),
+                      fmt::format("picture_times: {:g} s is after the end_time, {:g} s", time, case_.end_time));
   }
 
   Case& case_;

@@ -6,9 +6,9 @@
 
 namespace sluice {
 
-/// Fills in what depends on the dimension and checks what concerns several keys: components, whole numbers of cells, names
-/// of materials and faces, bodies inside the grid. `definition.source` gives the places. Keys that could not be read are
-/// passed over, as they are reported already.
+/// Fills in what depends on the dimension and checks what concerns several keys: components, whole numbers of cells,
+/// names of materials and faces, bodies inside the grid. `definition.source` gives the places. Keys that could not be
+/// read are passed over, as they are reported already.
 void complete_and_check(Case& definition, Problems& problems);
 
 }  // namespace sluice

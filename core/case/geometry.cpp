@@ -15,7 +15,8 @@ Bounds everywhere(std::size_t dimension) {
   return {std::vector<double>(dimension, -infinity), std::vector<double>(dimension, infinity)};
 }
 
-// ---- box ---------------------------------------------------------------------------------------------------------------
+// ---- box
+// ---------------------------------------------------------------------------------------------------------------
 
 bool contains(const Box& box, std::span<const double> x) {
   for (std::size_t a = 0; a < x.size(); ++a)
@@ -35,7 +36,8 @@ double distance(const Box& box, std::span<const double> x) {
 
 Bounds bounds_of(const Box& box, std::size_t) { return {box.min, box.max}; }
 
-// ---- polygon -----------------------------------------------------------------------------------------------------------
+// ---- polygon
+// -----------------------------------------------------------------------------------------------------------
 
 /// Calls visit(a, b) for every edge.
 template <class Visit>
@@ -44,8 +46,8 @@ void for_edges(const Polygon& polygon, const Visit& visit) {
     visit(polygon.vertices[j], polygon.vertices[i]);
 }
 
-/// Even-odd rule: counts the edges that a ray to the right of the point crosses. Edges hold their lower end only, and are
-/// always walked upwards, so that polygons on both sides of an edge compute the very same numbers for it.
+/// Even-odd rule: counts the edges that a ray to the right of the point crosses. Edges hold their lower end only, and
+/// are always walked upwards, so that polygons on both sides of an edge compute the very same numbers for it.
 bool contains(const Polygon& polygon, std::span<const double> x) {
   const double px = x.front(), pz = x.back();
   bool inside = false;
@@ -82,7 +84,8 @@ Bounds bounds_of(const Polygon& polygon, std::size_t dimension) {
   return bounds;
 }
 
-// ---- half-space --------------------------------------------------------------------------------------------------------
+// ---- half-space
+// --------------------------------------------------------------------------------------------------------
 
 /// normal · (x - point)
 double height(const HalfSpace& half_space, std::span<const double> x) {

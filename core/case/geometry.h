@@ -13,8 +13,8 @@ struct Box {
   std::vector<double> min, max;
 };
 
-/// Closed polygon in the plane of the first and last axis; in 3-D a prism along the middle axis. A point on an edge that two
-/// polygons share belongs to exactly one of them.
+/// Closed polygon in the plane of the first and last axis; in 3-D a prism along the middle axis. A point on an edge
+/// that two polygons share belongs to exactly one of them.
 struct Polygon {
   std::vector<std::array<double, 2>> vertices;
   double area() const;  ///< positive, whatever the orientation

@@ -68,7 +68,8 @@ std::string description(const Node& node) {
   return "'" + node.scalar + "'";
 }
 
-// ---- reading -----------------------------------------------------------------------------------------------------------
+// ---- reading
+// -----------------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -82,7 +83,7 @@ class TreeReader {
     Node node;
     node.place = place_of(yaml, fallback);
     if (++depth_ > 64) throw CaseError(node.place, "nested more than 64 deep; does an alias refer to itself?");
-    if (++count_ > 5'000'000) throw CaseError(node.place, "more than 5 million values; do aliases multiply?");
+    if (++count_ > 2'000'000) throw CaseError(node.place, "more than 2 million values; do aliases multiply?");
     if (yaml.IsScalar()) {
       node.kind = Node::Kind::scalar;
       node.scalar = yaml.Scalar();
@@ -113,6 +114,8 @@ class TreeReader {
         throw CaseError(place, fmt::format("the key '{}' occurs twice; the first is at {}", name, first.text()));
     map.keys.emplace_back(name, place);
     map.items.push_back(read(value, place));
+    // yaml-cpp places what is not there on the line below.
+    if (!map.items.back()) map.items.back().place = place;
   }
 
   std::string file_;
@@ -150,8 +153,8 @@ Node read_yaml_text(const std::string& text, const std::string& name) {
                                          documents.size()));
     return node;
   } catch (const YAML::Exception& error) {
-    const Place place = error.mark.is_null() ? Place{name, 0, 0}
-                                             : Place{name, error.mark.line + 1, error.mark.column + 1};
+    const Place place =
+        error.mark.is_null() ? Place{name, 0, 0} : Place{name, error.mark.line + 1, error.mark.column + 1};
     throw CaseError(place, "YAML syntax: " + error.msg);
   }
 }
@@ -167,7 +170,8 @@ Node read_yaml_file(const std::string& file) {
   return read_yaml_text(text.str(), file);
 }
 
-// ---- writing -----------------------------------------------------------------------------------------------------------
+// ---- writing
+// -----------------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -252,7 +256,8 @@ std::string yaml_text(const Node& node, int indent) {
   return block_text(node, indent);
 }
 
-// ---- near words --------------------------------------------------------------------------------------------------------
+// ---- near words
+// --------------------------------------------------------------------------------------------------------
 
 namespace {
 

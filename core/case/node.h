@@ -28,8 +28,8 @@ struct Node {
   Kind kind = Kind::absent;
   Place place;
   std::string scalar;
-  bool quoted = false;      ///< the scalar was written in quotes
-  std::vector<Node> items;  ///< list items or map values
+  bool quoted = false;                              ///< the scalar was written in quotes
+  std::vector<Node> items;                          ///< list items or map values
   std::vector<std::pair<std::string, Place>> keys;  ///< map keys, parallel to items
 
   static Node text(const std::string& scalar);

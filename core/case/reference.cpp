@@ -45,9 +45,11 @@ std::string cell(std::string text) {
 std::string table(const std::vector<FieldDoc>& docs) {
   std::string text = "| key | type | unit | allowed | default | |\n|---|---|---|---|---|---|\n";
   for (const FieldDoc& doc : docs) {
-    const std::string fallback = doc.required ? "**required**" : doc.default_value ? "`" + doc.default_text + "`" : doc.default_text;
-    text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", doc.name, cell(type_text(doc)), doc.unit, cell(doc.range),
-                        cell(fallback), cell(doc.sentence));
+    const bool has_value = doc.default_value.kind == Node::Kind::scalar || !doc.default_value.items.empty();
+    const std::string optional = has_value ? "`" + doc.default_text + "`" : doc.default_text;
+    const std::string fallback = doc.required ? "**required**" : optional;
+    text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", doc.name, cell(type_text(doc)), doc.unit,
+                        cell(doc.range), cell(fallback), cell(doc.sentence));
   }
   return text;
 }

@@ -17,7 +17,7 @@ namespace sluice {
 class Catalogue {
  public:
   struct Entry {
-    std::string summary;                                ///< one sentence
+    std::string summary;                                 ///< one sentence
     std::function<std::vector<struct FieldDoc>()> keys;  ///< the keys of its section in a case file; may be empty
   };
   Catalogue(std::string kind, std::string plural);

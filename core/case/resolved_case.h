@@ -11,7 +11,8 @@ namespace sluice {
 
 /// The complete case as YAML that load_case reads back as an equal case. Values are in SI with their units; polygons of
 /// other files and extended files are written in place. `sections` come from the physics module and take the place of
-/// those of the case, for example {"materials", …}; keys of materials that are left out get the defaults of their model.
+/// those of the case, for example {"materials", …}; keys of materials that are left out get the defaults of their
+/// model.
 std::string resolved_yaml(const Case& definition, const std::vector<std::pair<std::string, Node>>& sections = {});
 
 }  // namespace sluice

@@ -26,8 +26,8 @@ std::string example_of(const FieldDoc& doc) {
 void AnySchema::read_fields(void* object, const Node& section, const std::vector<std::string>& others,
                             Problems& problems) const {
   if (section.kind != Node::Kind::map && section.kind != Node::Kind::absent) {
-    problems.add(section.place, fmt::format("{}: found {}; expected a map of keys and values", name_,
-                                            description(section)));
+    problems.add(section.place,
+                 fmt::format("{}: found {}; expected a map of keys and values", name_, description(section)));
     return;
   }
   std::vector<std::string> allowed;

@@ -4,8 +4,9 @@
 /// the reference manual and the JSON schema for editors all come from that declaration:
 ///
 ///     const auto schema = Schema<Parameters>("material linear_elastic")
-///         .quantity("density", &Parameters::density, unit::density, above(0), "Mass per volume.")           // required
-///         .quantity("poisson_ratio", &Parameters::poisson_ratio, unit::none, within(-1, 0.5), "…", 0.3);    // default
+///         .quantity("density", &Parameters::density, unit::density, above(0), "Mass per volume.")           //
+///         required .quantity("poisson_ratio", &Parameters::poisson_ratio, unit::none, within(-1, 0.5), "…", 0.3); //
+///         default
 ///     const Parameters p = schema.read(node, {"model"});
 ///
 /// A key without a default is required. A std::optional member is not, and stays empty where the key is absent.
@@ -32,10 +33,10 @@ struct FieldDoc {
   std::string default_text = {};  ///< for people; empty if the key is required
   std::string sentence = {};
   bool required = false;
-  Node default_value = {};                  ///< absent unless a value may be written that means the same as leaving it out
-  std::vector<std::string> words = {};      ///< the words that are allowed, if they are few and fixed
-  std::string catalogue = {};               ///< plural of the catalogue whose names are allowed
-  std::vector<FieldDoc> nested = {};        ///< keys of a section, of each section of a list or map
+  Node default_value = Node();          ///< absent unless a value may be written that means the same as leaving it out
+  std::vector<std::string> words = {};  ///< the words that are allowed, if they are few and fixed
+  std::string catalogue = {};           ///< plural of the catalogue whose names are allowed
+  std::vector<FieldDoc> nested = {};    ///< keys of a section, of each section of a list or map
   std::vector<FieldDoc> alternatives = {};  ///< other ways of writing it: only type, unit, words and nested count
 };
 
@@ -67,7 +68,7 @@ class AnySchema {
   struct Field {
     FieldDoc doc;
     std::function<void(void* object, const Node& value, Problems& problems)> read;
-    std::function<Node(const void* object)> write;                  ///< absent if there is nothing to write
+    std::function<Node(const void* object)> write;                      ///< absent if there is nothing to write
     std::function<void(void* object, Problems& problems)> set_default;  ///< empty: the object's own value stands
   };
 
@@ -279,8 +280,8 @@ class Schema : public AnySchema {
                    const std::string& sentence, bool required) {
     const auto inner = std::make_shared<const Schema<U>>(schema);
     Field field;
-    field.doc = {.name = key, .type = field_type::sections, .sentence = sentence, .required = required,
-                 .nested = inner->docs()};
+    field.doc = {
+        .name = key, .type = field_type::sections, .sentence = sentence, .required = required, .nested = inner->docs()};
     if (!required) field.doc.default_text = "none";
     field.read = [=](void* object, const Node& node, Problems& problems) {
       if (!is_list(node, key, required, problems)) return;
@@ -300,7 +301,10 @@ class Schema : public AnySchema {
                          const std::string& sentence) {
     const auto inner = std::make_shared<const Schema<U>>(schema);
     Field field;
-    field.doc = {.name = key, .type = field_type::named_sections, .default_text = "none", .sentence = sentence,
+    field.doc = {.name = key,
+                 .type = field_type::named_sections,
+                 .default_text = "none",
+                 .sentence = sentence,
                  .nested = inner->docs()};
     field.read = [=](void* object, const Node& node, Problems& problems) {
       if (!is_map(node, key, problems)) return;
@@ -318,8 +322,8 @@ class Schema : public AnySchema {
     return with(std::move(field));
   }
 
-  /// Whatever the kinds above do not cover. `reader` adds what is wrong to the problems; `writer` returns an absent node
-  /// where there is nothing to write.
+  /// Whatever the kinds above do not cover. `reader` adds what is wrong to the problems; `writer` returns an absent
+  /// node where there is nothing to write.
   Schema& custom(FieldDoc doc, std::function<void(T&, const Node&, Problems&)> reader,
                  std::function<Node(const T&)> writer) {
     Field field;
@@ -353,7 +357,8 @@ class Schema : public AnySchema {
   static FieldDoc quantities_doc(const std::string& key, const Unit& unit, const Range& range,
                                  const Components& components, const std::string& sentence) {
     FieldDoc doc = number_doc(key, field_type::quantities, unit, range, sentence);
-    if (!components.allowed.empty()) doc.range = components.text() + " components" + (doc.range.empty() ? "" : ", each ") + doc.range;
+    if (!components.allowed.empty())
+      doc.range = components.text() + " components" + (doc.range.empty() ? "" : ", each ") + doc.range;
     return doc;
   }
 
@@ -384,7 +389,9 @@ class Schema : public AnySchema {
     Field field;
     field.doc = std::move(doc);
     field.doc.default_text = absent.text;
-    field.read = [=](void* object, const Node& node, Problems& problems) { of(object).*member = reader(node, problems); };
+    field.read = [=](void* object, const Node& node, Problems& problems) {
+      of(object).*member = reader(node, problems);
+    };
     field.write = [=](const void* object) {
       const auto& found = of(object).*member;
       return found ? writer(*found) : Node{};

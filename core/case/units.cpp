@@ -27,29 +27,27 @@ struct Symbol {
 };
 
 constexpr std::array symbols = {
-    Symbol{"m", {1, 1, {1, 0, 0, 0}}, "numcdk"},
-    Symbol{"s", {1, 1, {0, 0, 1, 0}}, "num"},
-    Symbol{"min", {60, 1, {0, 0, 1, 0}}, ""},
-    Symbol{"h", {3600, 1, {0, 0, 1, 0}}, ""},
-    Symbol{"day", {86400, 1, {0, 0, 1, 0}}, ""},
-    Symbol{"g", {1, 1000, {0, 1, 0, 0}}, "mkM"},
-    Symbol{"t", {1000, 1, {0, 1, 0, 0}}, "kM"},
-    Symbol{"N", {1, 1, {1, 1, -2, 0}}, "mkMG"},
-    Symbol{"Pa", {1, 1, {-1, 1, -2, 0}}, "mkMG"},
-    Symbol{"J", {1, 1, {2, 1, -2, 0}}, "mkMG"},
-    Symbol{"W", {1, 1, {2, 1, -3, 0}}, "mkMG"},
-    Symbol{"Hz", {1, 1, {0, 0, -1, 0}}, "kMG"},
-    Symbol{"rad", {1, 1, {0, 0, 0, 1}}, "m"},
-    Symbol{"deg", {std::numbers::pi, 180, {0, 0, 0, 1}}, ""},
-    Symbol{"%", {1, 100, {0, 0, 0, 0}}, ""},
-    Symbol{"1", {1, 1, {0, 0, 0, 0}}, ""},
+    Symbol{"m", {1, 1, {1, 0, 0, 0}}, "numcdk"},  Symbol{"s", {1, 1, {0, 0, 1, 0}}, "num"},
+    Symbol{"min", {60, 1, {0, 0, 1, 0}}, ""},     Symbol{"h", {3600, 1, {0, 0, 1, 0}}, ""},
+    Symbol{"day", {86400, 1, {0, 0, 1, 0}}, ""},  Symbol{"g", {1, 1000, {0, 1, 0, 0}}, "mkM"},
+    Symbol{"t", {1000, 1, {0, 1, 0, 0}}, "kM"},   Symbol{"N", {1, 1, {1, 1, -2, 0}}, "mkMG"},
+    Symbol{"Pa", {1, 1, {-1, 1, -2, 0}}, "mkMG"}, Symbol{"J", {1, 1, {2, 1, -2, 0}}, "mkMG"},
+    Symbol{"W", {1, 1, {2, 1, -3, 0}}, "mkMG"},   Symbol{"Hz", {1, 1, {0, 0, -1, 0}}, "kMG"},
+    Symbol{"rad", {1, 1, {0, 0, 0, 1}}, "m"},     Symbol{"deg", {std::numbers::pi, 180, {0, 0, 0, 1}}, ""},
+    Symbol{"%", {1, 100, {0, 0, 0, 0}}, ""},      Symbol{"1", {1, 1, {0, 0, 0, 0}}, ""},
 };
 
 constexpr std::array named_units = {
-    unit::none,          unit::length,  unit::area,        unit::volume, unit::mass,
-    unit::time,          unit::angle,   unit::velocity,    unit::acceleration, unit::density,
-    unit::unit_weight,   unit::force,   unit::stress,      unit::compressibility, unit::energy,
-    unit::power,         unit::rate,    unit::angular_velocity, unit::viscosity,
+    unit::none,         unit::length,
+    unit::area,         unit::volume,
+    unit::mass,         unit::time,
+    unit::angle,        unit::velocity,
+    unit::acceleration, unit::density,
+    unit::unit_weight,  unit::force,
+    unit::stress,       unit::compressibility,
+    unit::energy,       unit::power,
+    unit::rate,         unit::angular_velocity,
+    unit::viscosity,
 };
 
 Size prefix_size(char prefix) {
@@ -105,9 +103,9 @@ std::string_view trimmed(std::string_view text) {
 }
 
 [[noreturn]] void throw_unknown_unit(std::string_view symbol) {
-  static const std::vector<std::string> customary = {"m",  "km", "cm", "mm", "s",   "ms",  "min", "h",   "day", "kg", "t",
-                                            "g",  "N",  "kN", "MN", "Pa",  "kPa", "MPa", "GPa", "J",   "kJ", "W",
-                                            "kW", "Hz", "deg", "rad", "%"};
+  static const std::vector<std::string> customary = {"m",   "km", "cm", "mm", "s",  "ms", "min", "h",   "day",
+                                                     "kg",  "t",  "g",  "N",  "kN", "MN", "Pa",  "kPa", "MPa",
+                                                     "GPa", "J",  "kJ", "W",  "kW", "Hz", "deg", "rad", "%"};
   const std::string near = nearest_word(std::string(symbol), customary);
   throw UnitError(fmt::format("unknown unit '{}'{}", symbol, near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
@@ -207,12 +205,15 @@ double parse_quantity(const std::string& text, const Unit& expected) {
   try {
     quantity = parse_quantity(text);
   } catch (const UnitError& error) {
-    throw UnitError(fmt::format("{}; {}", error.what(), wanted()));
+    const std::string what = error.what();
+    if (what.back() == '?')
+      throw UnitError(fmt::format("{} Expected {}, for example {}", what, expected.name, expected.example));
+    throw UnitError(fmt::format("{}; {}", what, wanted()));
   }
   if (!quantity.has_unit) {
     if (expected.dimension == unit::angle.dimension && quantity.value != 0)
-      throw UnitError(fmt::format("'{}' has no unit; an angle needs deg or rad, for example {}", text,
-                                  expected.example));
+      throw UnitError(
+          fmt::format("'{}' has no unit; an angle needs deg or rad, for example {}", text, expected.example));
     return quantity.value;
   }
   if (quantity.dimension != expected.dimension)

@@ -66,8 +66,8 @@ Quantity parse_quantity(const std::string& text);
 /// The dimension and size of a unit alone. Throws UnitError.
 Quantity parse_unit(const std::string& text);
 
-/// The value in SI of a quantity that must have this dimension; bare numbers are SI, but an angle other than 0 needs its
-/// unit. Throws UnitError.
+/// The value in SI of a quantity that must have this dimension; bare numbers are SI, but an angle other than 0 needs
+/// its unit. Throws UnitError.
 double parse_quantity(const std::string& text, const Unit& expected);
 
 /// "a stress" where the dimension has a name, otherwise its unit in SI base units, "kg/m5".

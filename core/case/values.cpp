@@ -85,8 +85,8 @@ std::optional<std::vector<double>> quantities(const Node& node, const std::strin
                                               const Range& range, const Components& components, Problems& problems) {
   const std::string size = components.allowed.empty() ? "a list" : "a list of " + components.text();
   if (node.kind != Node::Kind::list) {
-    problems.add(node.place, fmt::format("{}: found {}; expected {}, each {}", name, description(node), size,
-                                         expectation(unit)));
+    problems.add(node.place,
+                 fmt::format("{}: found {}; expected {}, each {}", name, description(node), size, expectation(unit)));
     return std::nullopt;
   }
   const std::string common = common_unit(node);
@@ -137,7 +137,7 @@ std::optional<std::string> word(const Node& node, const std::string& name, const
                                 Problems& problems) {
   if (!is_scalar(node, name, fmt::format("one of {}", fmt::join(allowed, ", ")), problems)) return std::nullopt;
   if (std::find(allowed.begin(), allowed.end(), node.scalar) != allowed.end()) return node.scalar;
-  problems.add(node.place, fmt::format("unknown {} '{}'; {}", name, node.scalar, allowed_words(node.scalar, allowed)));
+  problems.add(node.place, fmt::format("{}: found '{}'; {}", name, node.scalar, allowed_words(node.scalar, allowed)));
   return std::nullopt;
 }
 

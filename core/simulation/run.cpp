@@ -86,7 +86,7 @@ class Run {
     }
     try {
       while (simulation_->time() < case_.end_time) {
-        const double until = std::min({case_.end_time, frames.next(), rows.next()});
+        const double until = std::min(case_.end_time, frames.next());
         const StepInfo info = simulation_->advance(until);
         particle_steps_ += simulation_->particles().size();
         const bool at_end = simulation_->time() >= case_.end_time;

@@ -54,7 +54,8 @@ TimeStepLimit choose_time_step(const PhysicsModule<Dim>& module, const Scene<Dim
   if (fixed && steps > 1 - 1e-6) return limit;
   if (steps > 10) return limit;
   const double whole = std::max(1.0, std::ceil(steps - 1e-6));
-  return {left / whole, whole > steps * (1 + 1e-6) ? "output" : limit.name};
+  const double dt = left / whole;
+  return {dt, dt < 0.5 * limit.seconds ? "output" : limit.name};
 }
 
 #define SLUICE_INSTANTIATE(Dim)                                                                                     \

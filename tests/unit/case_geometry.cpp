@@ -44,8 +44,8 @@ TEST(Geometry, PolygonOfEitherOrientationAndNotConvex) {
   }
 }
 
-// Tolerance: none. Random points, and all points that stand on the edges, belong to exactly one of the triangles into which
-// a square is cut by random inner points: sums of memberships are whole numbers.
+// Tolerance: none. Random points, and all points that stand on the edges, belong to exactly one of the triangles into
+// which a square is cut by random inner points: sums of memberships are whole numbers.
 TEST(Geometry, PointsOnSharedEdgesBelongToExactlyOnePolygon) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(0, 1);

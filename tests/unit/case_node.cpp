@@ -48,8 +48,7 @@ TEST(Node, BrokenYamlIsLocated) {
   EXPECT_EQ(message_of_text("a: 1\nb: [1, 2\nc: 3\n").substr(0, 25), "a.yaml:3:2: YAML syntax: ");
   EXPECT_EQ(message_of_text("a: b: c\n").substr(0, 25), "a.yaml:1:5: YAML syntax: ");
   EXPECT_NE(message_of_text("a: *nothing\n").find("a.yaml:1:4: YAML syntax: "), std::string::npos);
-  EXPECT_EQ(message_of_text("a: 1\nb: 2\na: 3\n"),
-            "a.yaml:3:1: the key 'a' occurs twice; the first is at a.yaml:1:1");
+  EXPECT_EQ(message_of_text("a: 1\nb: 2\na: 3\n"), "a.yaml:3:1: the key 'a' occurs twice; the first is at a.yaml:1:1");
   EXPECT_EQ(message_of_text("a: 1\n---\nb: 2\n"),
             "a.yaml:1:1: the file holds 2 YAML documents (separated by ---); it must hold one");
   EXPECT_NE(message_of_text("? [1, 2]\n: 3\n"), "");
@@ -64,7 +63,7 @@ TEST(Node, AliasesThatRunAwayAreErrors) {
     for (int k = 0; k < 9; ++k) bomb += ", " + last;
     bomb += "]\n";
   }
-  EXPECT_NE(message_of_text(bomb).find("more than 5 million values"), std::string::npos);
+  EXPECT_NE(message_of_text(bomb).find("more than 2 million values"), std::string::npos);
 }
 
 TEST(Node, MissingFilesNameTheNearest) {
@@ -100,10 +99,10 @@ TEST(Node, WrittenTextReadsBackAsTheSameTree) {
 
 TEST(NearestWord, FindsWhatWasMeant) {
   const std::vector<std::string> words = {"density", "youngs_modulus", "poisson_ratio", "cohesion"};
-  EXPECT_EQ(nearest_word("desnity", words), "density");          // swapped
-  EXPECT_EQ(nearest_word("densty", words), "density");           // left out
+  EXPECT_EQ(nearest_word("desnity", words), "density");  // swapped
+  EXPECT_EQ(nearest_word("densty", words), "density");   // left out
   EXPECT_EQ(nearest_word("Young's modulus", words), "youngs_modulus");
-  EXPECT_EQ(nearest_word("poisson", words), "poisson_ratio");    // a part of it
+  EXPECT_EQ(nearest_word("poisson", words), "poisson_ratio");  // a part of it
   EXPECT_EQ(nearest_word("permeability", words), "");
   EXPECT_EQ(nearest_word("x", {"y", "z"}), "");
   EXPECT_EQ(nearest_word("", words), "");
@@ -115,7 +114,9 @@ TEST(Catalogue, UnknownNamesGetTheNearest) {
   models.add("linear_elastic", {"", {}}, 1);
   models.add("mohr_coulomb", {"", {}}, 2);
   EXPECT_EQ(models.find("mohr_coulomb", {}), 2);
-  EXPECT_EQ(message_of([&] { models.require("mohr_columb", {"dam.yaml", 12, 5}); }),
+  EXPECT_EQ(message_of([&] {
+              models.require("mohr_columb", {"dam.yaml", 12, 5});
+            }),
             "dam.yaml:12:5: unknown material model 'mohr_columb'; allowed: linear_elastic, mohr_coulomb; did you mean "
             "'mohr_coulomb'?");
 }

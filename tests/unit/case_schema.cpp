@@ -29,8 +29,8 @@ struct Soil {
 };
 
 const Schema<Soil>& soil_schema() {
-  static const auto layer = Schema<Layer>("layer").quantity("thickness", &Layer::thickness, unit::length, above(0),
-                                                            "Thickness.");
+  static const auto layer =
+      Schema<Layer>("layer").quantity("thickness", &Layer::thickness, unit::length, above(0), "Thickness.");
   static const auto schema =
       Schema<Soil>("soil")
           .quantity("density", &Soil::density, unit::density, above(0), "Mass per volume.")
@@ -41,9 +41,8 @@ const Schema<Soil>& soil_schema() {
           .quantities("stress", &Soil::stress, unit::stress, any_number, {{4, 6}}, "Stress.", Absent{"zero"})
           .integer("layers_per_metre", &Soil::layers_per_metre, from_to(1, 10), "Layers.", 2)
           .boolean("saturated", &Soil::saturated, "Whether the pores are full of water.", true)
-          .choice("drainage", &Soil::drainage,
-                  {{"drained", Drainage::drained}, {"undrained", Drainage::undrained}}, "Drainage.",
-                  Drainage::undrained)
+          .choice("drainage", &Soil::drainage, {{"drained", Drainage::drained}, {"undrained", Drainage::undrained}},
+                  "Drainage.", Drainage::undrained)
           .words("tags", &Soil::tags, "Tags.")
           .section("top", &Soil::top, layer, "The uppermost layer.")
           .sections("layers", &Soil::layers, layer, "Layers.", false)
@@ -95,7 +94,7 @@ TEST(Schema, Messages) {
             "s.yaml:3:9: cutoff: found '3 m', a length; expected a stress, for example 2 MPa");
   EXPECT_EQ(message_of("cutoff: [1, 2]\n"),
             "s.yaml:3:9: cutoff: found a list of 2; expected a stress, for example 2 MPa");
-  EXPECT_EQ(message_of("cutoff:\n"), "s.yaml:3:8: cutoff has no value; expected a stress, for example 2 MPa");
+  EXPECT_EQ(message_of("cutoff:\n"), "s.yaml:3:1: cutoff has no value; expected a stress, for example 2 MPa");
   EXPECT_EQ(message_of("stress: [1, 2]\n"), "s.yaml:3:9: stress: found 2 components; expected 4 or 6");
   EXPECT_EQ(message_of("stress: [1, 2, x, 4]\n"),
             "s.yaml:3:16: stress, component 3: 'x' is not a number; expected a stress, for example 2 MPa");
@@ -103,9 +102,9 @@ TEST(Schema, Messages) {
             "s.yaml:3:19: layers_per_metre: found '2.5'; expected a whole number");
   EXPECT_EQ(message_of("layers_per_metre: 11\n"),
             "s.yaml:3:19: layers_per_metre is 11; it must be at least 1 and at most 10");
-  EXPECT_EQ(message_of("saturated: maybe\n"), "s.yaml:3:12: unknown saturated 'maybe'; allowed: true, false");
+  EXPECT_EQ(message_of("saturated: maybe\n"), "s.yaml:3:12: saturated: found 'maybe'; allowed: true, false");
   EXPECT_EQ(message_of("drainage: draind\n"),
-            "s.yaml:3:11: unknown drainage 'draind'; allowed: drained, undrained; did you mean 'drained'?");
+            "s.yaml:3:11: drainage: found 'draind'; allowed: drained, undrained; did you mean 'drained'?");
   EXPECT_EQ(message_of("top: 3\n"), "s.yaml:3:6: layer: found '3'; expected a map of keys and values");
   EXPECT_EQ(message_of("layers: {}\n"),
             "s.yaml:3:9: layers: found a map; expected a list of sections, each beginning with a dash");

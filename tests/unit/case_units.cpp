@@ -59,7 +59,7 @@ TEST(Units, Messages) {
   EXPECT_EQ(message_of("2 kg/m5", unit::stress), "found '2 kg/m5', kg/m5; expected a stress, for example 2 MPa");
   EXPECT_EQ(message_of("0.3 m", unit::none), "found '0.3 m', a length; expected a plain number, for example 0.3");
   EXPECT_EQ(message_of("2 Mpa", unit::stress),
-            "unknown unit 'Mpa'; did you mean 'MPa'?; expected a stress, for example 2 MPa");
+            "unknown unit 'Mpa'; did you mean 'MPa'? Expected a stress, for example 2 MPa");
   EXPECT_EQ(message_of("soft", unit::stress), "'soft' is not a number; expected a stress, for example 2 MPa");
   EXPECT_EQ(message_of("", unit::stress), "'' is not a number; expected a stress, for example 2 MPa");
   EXPECT_EQ(message_of("2,5 MPa", unit::stress),
@@ -83,10 +83,10 @@ TEST(Units, WrittenValuesReadBackAsTheSameNumber) {
 }
 
 TEST(Units, ExamplesHaveTheDimensionThatTheyExplain) {
-  for (const Unit& unit : {unit::none, unit::length, unit::area, unit::volume, unit::mass, unit::time, unit::angle,
-                           unit::velocity, unit::acceleration, unit::density, unit::unit_weight, unit::force,
-                           unit::stress, unit::compressibility, unit::energy, unit::power, unit::rate,
-                           unit::angular_velocity, unit::viscosity})
+  for (const Unit& unit :
+       {unit::none, unit::length, unit::area, unit::volume, unit::mass, unit::time, unit::angle, unit::velocity,
+        unit::acceleration, unit::density, unit::unit_weight, unit::force, unit::stress, unit::compressibility,
+        unit::energy, unit::power, unit::rate, unit::angular_velocity, unit::viscosity})
     EXPECT_EQ(message_of(unit.example, unit), "");
 }
 
