@@ -1,10 +1,7 @@
 /// The `sluice` command.
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -13,6 +10,7 @@
 #include "core/case/case.h"
 #include "core/case/reference.h"
 #include "core/case/registry.h"
+#include "core/output/pictures.h"
 #include "core/simulation/guard.h"
 #include "core/simulation/parallel.h"
 #include "core/simulation/physics_module.h"
@@ -51,45 +49,19 @@ void use_threads(int asked) {
   set_thread_count(asked == 0 ? cores : asked);
 }
 
-/// The script that draws pictures stands beside the program, or in the share folder of the installation.
-fs::path pictures_script() {
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
-  for (const fs::path& candidate : {program / "pictures.py", program / "../share/sluice/pictures.py"})
-    if (fs::exists(candidate)) return fs::canonical(candidate);
-  throw std::runtime_error(fmt::format("pictures.py was not found beside the program in {}", program.string()));
-}
-
-/// A python3 that knows matplotlib: $SLUICE_PYTHON, else Debian's.
-std::string python() {
-  if (const char* chosen = std::getenv("SLUICE_PYTHON")) return chosen;
-  return fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
-}
-
-int draw_pictures(const Arguments& arguments) {
-  if (!fs::exists(fs::path(arguments.results) / "results.h5"))
-    throw CaseError(fmt::format("{} holds no results.h5; give the folder that `sluice run` wrote to", arguments.results));
-  std::vector<std::string> words = {python(), pictures_script().string(), arguments.results};
-  if (!arguments.fields.empty()) {
-    words.emplace_back("--fields");
-    words.insert(words.end(), arguments.fields.begin(), arguments.fields.end());
+/// Fields and times that are not asked for are those of the case.
+int plot(const Arguments& arguments) {
+  const fs::path folder = arguments.results;
+  if (!fs::exists(folder / "results.h5"))
+    throw CaseError(
+        fmt::format("{} holds no results.h5; give the folder that `sluice run` wrote to", arguments.results));
+  PictureRequest request{folder, arguments.fields, arguments.times, arguments.animation, false};
+  if (const fs::path resolved = folder / "case.resolved.yaml"; fs::exists(resolved)) {
+    const OutputCase output = load_case(resolved.string()).output;
+    if (request.fields.empty()) request.fields = output.pictures;
+    if (request.times.empty()) request.times = output.picture_times;
   }
-  if (!arguments.times.empty()) {
-    words.emplace_back("--times");
-    for (const double t : arguments.times) words.push_back(fmt::format("{}", t));
-  }
-  if (arguments.animation) words.emplace_back("--animation");
-  std::vector<char*> argv;
-  for (auto& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  const pid_t child = fork();
-  if (child == 0) {
-    execvp(argv[0], argv.data());
-    fmt::print(stderr, "sluice plot: {} could not be started\n", words[0]);
-    _exit(127);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? exit_code::done : exit_code::run_failed;
+  return draw_pictures(request) ? exit_code::done : exit_code::run_failed;
 }
 
 int run(const Arguments& arguments) {
@@ -169,7 +141,7 @@ int dispatch(int argc, char** argv) {
   }
   if (*run_command) return run(arguments);
   if (*check_command) return check(arguments);
-  if (*plot_command) return draw_pictures(arguments);
+  if (*plot_command) return plot(arguments);
   if (*list_command) return list(arguments);
   return schema(arguments);
 }

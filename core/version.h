@@ -11,6 +11,6 @@ std::string_view commit();      ///< abbreviated git hash at configuration; "" o
 std::string_view compiler();    ///< "GNU 12.2.0"
 std::string_view build_type();  ///< "Release" or "Debug"
 
-std::string version_text();     ///< "0.1.0 (1a2b3c4d5e6f)"
+std::string version_text();  ///< "0.1.0 (1a2b3c4d5e6f)"
 
 }  // namespace sluice

@@ -163,13 +163,6 @@ void Blocks<Dim>::connect(int degree) {
       }
     });
   }
-  const auto threads = static_cast<std::size_t>(thread_count());
-  const std::size_t count = particle_blocks_.empty() ? 0 : particle_blocks_.back().end;
-  shares_.assign(1, 0);
-  for (std::size_t b = 0; b < particle_blocks_.size() && shares_.size() < threads; ++b)
-    if (particle_blocks_[b].end * threads >= count * shares_.size()) shares_.push_back(b + 1);
-  shares_.resize(threads, particle_blocks_.size());
-  shares_.push_back(particle_blocks_.size());
 }
 
 template <int Dim>

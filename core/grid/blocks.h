@@ -1,8 +1,9 @@
 /// Blocks: which parts of the grid are active, and which particles belong to them.
 ///
-/// The particles are kept sorted by block, then material, then cell. A block of particles works on a tile, a small dense
-/// patch of nodes that covers everything its particles can reach; tiles are summed into blocks of nodes in a fixed order,
-/// so results do not depend on the number of threads. Memory and time are proportional to the blocks in use.
+/// The particles are kept sorted by block, then material, then cell. A block of particles works on a tile, a small
+/// dense patch of nodes that covers everything its particles can reach; tiles are summed into blocks of nodes in a
+/// fixed order, so results do not depend on the number of threads. Memory and time are proportional to the blocks in
+/// use.
 #pragma once
 
 #include <cstdint>
@@ -46,8 +47,6 @@ class Blocks {
   const std::vector<NodeBlock<Dim>>& node_blocks() const { return node_blocks_; }
   const std::vector<Batch>& batches() const { return batches_; }
   std::size_t largest_block() const { return largest_block_; }
-  /// Bounds of one contiguous range of particle blocks a thread, with about the same number of particles in each.
-  const std::vector<std::size_t>& shares() const { return shares_; }
 
   /// Which particles are in which block is history (they may have wandered since the last sort), so a checkpoint
   /// keeps it.
@@ -60,7 +59,6 @@ class Blocks {
   std::vector<ParticleBlock<Dim>> particle_blocks_;
   std::vector<NodeBlock<Dim>> node_blocks_;
   std::vector<Batch> batches_;
-  std::vector<std::size_t> shares_;
   std::size_t largest_block_ = 0;
 };
 

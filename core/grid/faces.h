@@ -25,8 +25,8 @@ class Faces {
   /// block; the change is added to dv as well.
   void fix(const NodeBlock<Dim>& nodes, Lane* motion) const { impose(nodes, motion, false); }
 
-  /// The same after forces have acted, with Coulomb friction: the normal impulse m v_n that the wall takes up limits the
-  /// tangential impulse to friction * m v_n. A wall that is being pulled (v_n away from it) gives no friction.
+  /// The same after forces have acted, with Coulomb friction: the normal impulse m v_n that the wall takes up limits
+  /// the tangential impulse to friction * m v_n. A wall that is being pulled (v_n away from it) gives no friction.
   void fix_with_friction(const NodeBlock<Dim>& nodes, Lane* motion) const { impose(nodes, motion, true); }
 
   const FaceCase& face(int axis, int side) const { return face_[static_cast<std::size_t>(2 * axis + side)]; }

@@ -32,8 +32,8 @@ void NodeFields<Dim>::resize(const Blocks<Dim>& blocks, int degree) {
 
 namespace {
 
-/// The part of a node block that one tile overlaps: nodes [low, high) of the block, node i of the block at i + offset of
-/// the tile.
+/// The part of a node block that one tile overlaps: nodes [low, high) of the block, node i of the block at i + offset
+/// of the tile.
 struct Overlap {
   int low, high, offset;
   Overlap(int width, int tile, int shift)
@@ -42,15 +42,16 @@ struct Overlap {
         offset(width * shift + tile_margin) {}
 };
 
-/// Calls row(node, place, length) for every row along the first axis that a node block shares with a tile: `length` nodes
-/// from number `node` of the block and number `place` of the tile on. `n` numbers the shift from the tile's block to the
-/// node block.
+/// Calls row(node, place, length) for every row along the first axis that a node block shares with a tile: `length`
+/// nodes from number `node` of the block and number `place` of the tile on. `n` numbers the shift from the tile's block
+/// to the node block.
 template <int Dim, class Row>
 void for_shared_rows(int tile, int n, const Row& row) {
   constexpr int width = block_width<Dim>;
   const Overlap x(width, tile, n % 3 - 1), y(width, tile, n / 3 % 3 - 1);
   if constexpr (Dim == 2) {
-    for (int j = y.low; j < y.high; ++j) row(j * width + x.low, (j + y.offset) * tile + x.low + x.offset, x.high - x.low);
+    for (int j = y.low; j < y.high; ++j)
+      row(j * width + x.low, (j + y.offset) * tile + x.low + x.offset, x.high - x.low);
   } else {
     const Overlap z(width, tile, n / 9 - 1);
     for (int k = z.low; k < z.high; ++k)

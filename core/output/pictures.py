@@ -175,10 +175,10 @@ class Scale:
         self.map = plt.get_cmap(COLOUR_MAP)
         values = np.concatenate([results.values(name, frame) for frame in frames])
         values = values[np.isfinite(values)]
-        # A few extreme particles do not decide the scale.
+        # A few extreme particles do not decide the scale; where most of a field is zero, a thin zone of large values neither.
         low, high = np.percentile(values, [0.5, 99.5]) if values.size else (0, 1)
         if 0 <= low < 0.2 * high:
-            low = 0
+            low, high = 0, np.percentile(values, 97)
         self.norm = Normalize(low, high if high > low else low + 1)
         self.extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[
             (int(values.size and values.min() < low), int(values.size and values.max() > high))
@@ -345,32 +345,30 @@ def with_unit(name):
 
 
 def draw_history(table, path):
-    """Energies above, the time step by what limits it below."""
+    """Kinetic energy; the change of all energies since the start; the time step by what limits it."""
     time = np.array(table["time_s"], float)
-    energies = [name for name in table if "energy" in name]
-    steps = next((name for name in table if name in ("dt_s", "time_step_s")), None)
-    panels = [p for p in (energies, steps) if p]
-    if not panels:
-        return
-    figure, axes = plt.subplots(len(panels), 1, figsize=(7, 2.6 * len(panels)), sharex=True, squeeze=False,
-                                layout="constrained")
-    axes = list(axes[:, 0])
-    if energies:
-        axis = axes.pop(0)
-        for name in energies:
-            axis.plot(time, np.array(table[name], float), label=with_unit(name), linewidth=1.2)
-        axis.set_ylabel("energy")
-        axis.legend(frameon=False, fontsize=8)
-    if steps:
-        axis = axes.pop(0)
-        step = np.array(table[steps], float)
-        limiter = np.array(table.get("limiter", ["not recorded"] * len(step)))
-        axis.plot(time, step, color="0.7", linewidth=0.8)
-        for name in dict.fromkeys(limiter):
-            axis.plot(time[limiter == name], step[limiter == name], ".", markersize=3, label=name.replace("_", " "))
-        axis.set(ylabel="time step [s]", ylim=(0, None))
-        axis.legend(frameon=False, fontsize=8, title="limited by", title_fontsize=8)
-    figure.axes[-1].set_xlabel("time [s]")
+    energies = {name: np.array(table[name], float) for name in table if "energy" in name}
+    kinetic = energies.get("kinetic_energy_J")
+    step = np.array(table["dt_s"], float)
+    figure, axes = plt.subplots(3, 1, figsize=(7, 7), sharex=True, layout="constrained")
+    if kinetic is not None and kinetic.max() > 0:
+        axes[0].semilogy(time, np.maximum(kinetic, 1e-6 * kinetic.max()), color="#4477aa", linewidth=1.2)
+        axes[0].axhline(1e-3 * kinetic.max(), color="0.6", linewidth=0.8, linestyle="--")
+        axes[0].annotate("1/1000 of its peak", (time[-1], 1e-3 * kinetic.max()), ha="right", va="bottom", fontsize=7, color="0.4")
+    axes[0].set_ylabel("kinetic energy [J]")
+    for name, energy in energies.items():
+        axes[1].plot(time, energy - energy[0], label=name.removesuffix("_energy_J"), linewidth=1.2)
+    axes[1].plot(time, sum(energy - energy[0] for energy in energies.values()), "k:", label="sum", linewidth=1)
+    axes[1].set_ylabel("change of energy [J]")
+    axes[1].legend(frameon=False, fontsize=8)
+    taken = step > 0
+    limiter = np.array(table["limiter"])
+    axes[2].plot(time[taken], step[taken], color="0.8", linewidth=0.8)
+    for name in dict.fromkeys(limiter[taken]):
+        chosen = taken & (limiter == name)
+        axes[2].plot(time[chosen], step[chosen], ".", markersize=3, label=name)
+    axes[2].set(ylabel="time step [s]", ylim=(0, None), xlabel="time [s]")
+    axes[2].legend(frameon=False, fontsize=8, title="limited by", title_fontsize=8)
     figure.savefig(path)
     plt.close(figure)
 

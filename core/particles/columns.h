@@ -23,9 +23,9 @@ enum class Role {
 };
 
 struct ColumnSpec {
-  std::string name;      ///< snake case, for example "equivalent_plastic_strain"
-  std::string unit;      ///< SI, for example "Pa"; "1" for pure numbers
-  int components = 1;    ///< stored apart: component k of all particles is contiguous
+  std::string name;    ///< snake case, for example "equivalent_plastic_strain"
+  std::string unit;    ///< SI, for example "Pa"; "1" for pure numbers
+  int components = 1;  ///< stored apart: component k of all particles is contiguous
   Role role = Role::state;
   std::string sentence;  ///< what it is, with its sign convention
   bool output = true;    ///< written to results.h5

@@ -111,10 +111,10 @@ class Claims {
     const std::span<const double> x(claim.x.data(), Dim);
     const double edge = on_edge * grid_.smallest_cell();
     if (body.region.distance_to_surface(x) < edge || other.region.distance_to_surface(x) < edge) return;
-    throw CaseError(body.place, fmt::format("bodies overlap: the point ({:g}) m lies in this body of '{}' and in the body of "
-                                            "'{}' at {}; to cut the former out of the latter write `replaces: {}`",
-                                            fmt::join(x, ", "), body.material, other.material, other.place.text(),
-                                            other.material));
+    throw CaseError(body.place,
+                    fmt::format("bodies overlap: the point ({:g}) m lies in this body of '{}' and in the body of "
+                                "'{}' at {}; to cut the former out of the latter write `replaces: {}`",
+                                fmt::join(x, ", "), body.material, other.material, other.place.text(), other.material));
   }
 
   const Case& case_;

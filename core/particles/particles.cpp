@@ -11,8 +11,8 @@ Particles::Particles(int dim) : dimension(dim) {
   position = columns.declare({"position", "m", dim, Role::state, "Where the material point is."});
   initial_position =
       columns.declare({"initial_position", "m", dim, Role::state, "Where the material point was at time 0.", false});
-  velocity = columns.declare(
-      {"velocity", "m/s", dim, Role::state, "Velocity at the middle of the last step (leap-frog)."});
+  velocity =
+      columns.declare({"velocity", "m/s", dim, Role::state, "Velocity at the middle of the last step (leap-frog)."});
   const std::string per_metre = dim == 2 ? ", per metre of thickness." : ".";
   mass = columns.declare({"mass", dim == 2 ? "kg/m" : "kg", 1, Role::state, "Mass" + per_metre});
   volume = columns.declare({"volume", dim == 2 ? "m2" : "m3", 1, Role::state, "Current volume" + per_metre});

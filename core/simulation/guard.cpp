@@ -47,13 +47,17 @@ void throw_first_bad_particle(const Scene<Dim>& scene) {
     for (int c = 0; c < symmetric_components<Dim>; ++c) stress += std::abs(ps.columns.data(ps.stress, c)[p]);
     const double volume = ps.columns.data(ps.volume)[p];
     const char* what = nullptr;
-    if (!(length<Dim>(vector_at<Dim>(ps.columns, ps.velocity, p)) < 1e150)) what = "a velocity is not finite";
-    else if (!(volume > 0)) what = "a particle is inverted (its volume would be negative)";
-    else if (!(stress < 1e300)) what = "a stress is not finite";
+    if (!(length<Dim>(vector_at<Dim>(ps.columns, ps.velocity, p)) < 1e150))
+      what = "a velocity is not finite";
+    else if (!(volume > 0))
+      what = "a particle is inverted (its volume would be negative)";
+    else if (!(stress < 1e300))
+      what = "a stress is not finite";
     if (what != nullptr)
-      throw PhysicsError(fmt::format("the physics went bad: {}: {}. The last good state is in the latest checkpoint; a smaller "
-                                     "time step (scheme.courant, scheme.strain_per_step) is the usual remedy.",
-                                     what, describe(scene, p)));
+      throw PhysicsError(
+          fmt::format("the physics went bad: {}: {}. The last good state is in the latest checkpoint; a smaller "
+                      "time step (scheme.courant, scheme.strain_per_step) is the usual remedy.",
+                      what, describe(scene, p)));
   }
   throw PhysicsError(fmt::format("the physics went bad in step {} at time {:g} s", scene.step + 1, scene.time));
 }
@@ -71,9 +75,10 @@ std::size_t apply_outflow(Scene<Dim>& scene, OutflowPolicy policy) {
       if (x >= low && x < high) continue;
       const bool by_round_off = x > low - tolerance && x < high + tolerance;
       if (policy == OutflowPolicy::error && !by_round_off)
-        throw OutflowError(fmt::format("a particle left the grid: {}; make the grid larger, close the face, or set "
-                                       "`outflow: remove` or `outflow: clamp`",
-                                       describe(scene, p)));
+        throw OutflowError(
+            fmt::format("a particle left the grid: {}; make the grid larger, close the face, or set "
+                        "`outflow: remove` or `outflow: clamp`",
+                        describe(scene, p)));
       if (policy == OutflowPolicy::remove && !by_round_off) {
         inside = false;
         continue;
@@ -92,8 +97,8 @@ std::size_t apply_outflow(Scene<Dim>& scene, OutflowPolicy policy) {
   return removed;
 }
 
-#define SLUICE_INSTANTIATE(Dim)                                       \
-  template void throw_first_bad_particle<Dim>(const Scene<Dim>&);     \
+#define SLUICE_INSTANTIATE(Dim)                                   \
+  template void throw_first_bad_particle<Dim>(const Scene<Dim>&); \
   template std::size_t apply_outflow<Dim>(Scene<Dim>&, OutflowPolicy);
 SLUICE_INSTANTIATE(2)
 SLUICE_INSTANTIATE(3)

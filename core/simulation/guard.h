@@ -16,8 +16,8 @@ class OutflowError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Applies the outflow policy to particles outside of the grid; returns how many were removed. Throws OutflowError under
-/// OutflowPolicy::error.
+/// Applies the outflow policy to particles outside of the grid; returns how many were removed. Throws OutflowError
+/// under OutflowPolicy::error.
 template <int Dim>
 std::size_t apply_outflow(Scene<Dim>& scene, OutflowPolicy policy);
 

@@ -1,48 +1,41 @@
-/// Parallel loops. All threads of the program start here.
+/// Parallel loops. All threads of the program work here.
 ///
 /// The work of an item must not depend on which thread does it, and items must write to places of their own: then the
 /// answer is the same, bit for bit, on any number of threads.
 #pragma once
 
 #include <cstddef>
-#include <vector>
-
-#if defined(SLUICE_STD_THREADS)
-#include <thread>
-#else
-#include <omp.h>
-#endif
+#include <type_traits>
 
 namespace sluice {
 
-/// Number of threads that parallel loops use.
+/// Number of threads that parallel loops use; the calling one is among them. Not to be changed within a loop.
 int thread_count();
 void set_thread_count(int threads);
 
-/// Calls body(item) for item = 0 … count-1, a contiguous range of items a thread.
+/// A loop body without its type: does items [begin, end) as thread number `thread`.
+struct LoopBody {
+  void (*work)(const void* body, std::size_t begin, std::size_t end, int thread);
+  const void* body;
+};
+
+/// Shares items 0 … count-1 among the threads: each begins with a contiguous share of its own and, when that is done,
+/// helps the others. A thread that the machine has put aside therefore holds up little.
+void run_loop(std::size_t count, const LoopBody& body);
+
+/// Calls body(item) or body(item, thread) for item = 0 … count-1. Exceptions must not leave the body.
 template <class Body>
 void parallel_for(std::size_t count, const Body& body) {
-#if defined(SLUICE_STD_THREADS)
-  const auto threads = static_cast<std::size_t>(thread_count());
-  std::vector<std::thread> team;
-  for (std::size_t t = 0; t < threads; ++t)
-    team.emplace_back([&, t] {
-      for (std::size_t i = count * t / threads; i < count * (t + 1) / threads; ++i) body(i);
-    });
-  for (auto& member : team) member.join();
-#else
-#pragma omp parallel for schedule(static) num_threads(thread_count())
-  for (std::size_t i = 0; i < count; ++i) body(i);
-#endif
-}
-
-/// Calls body(item, range) for all items bounds[range] <= item < bounds[range + 1]; each range is the work of one
-/// thread, in order. There are thread_count() ranges.
-template <class Body>
-void parallel_ranges(const std::vector<std::size_t>& bounds, const Body& body) {
-  parallel_for(bounds.size() - 1, [&](std::size_t range) {
-    for (std::size_t i = bounds[range]; i < bounds[range + 1]; ++i) body(i, range);
-  });
+  run_loop(count, {[](const void* erased, std::size_t begin, std::size_t end, int thread) {
+                     const Body& typed = *static_cast<const Body*>(erased);
+                     for (std::size_t i = begin; i < end; ++i) {
+                       if constexpr (std::is_invocable_v<Body, std::size_t, int>)
+                         typed(i, thread);
+                       else
+                         typed(i);
+                     }
+                   },
+                   &body});
 }
 
 }  // namespace sluice

@@ -1,7 +1,7 @@
 /// PhysicsModule: what the time loop asks of a physics.
 ///
-/// A module is registered under the name that a case file uses. The time loop, output, checkpoints, boundaries, transfers
-/// and materials are written once and serve every module.
+/// A module is registered under the name that a case file uses. The time loop, output, checkpoints, boundaries,
+/// transfers and materials are written once and serve every module.
 #pragma once
 
 #include <functional>

@@ -34,8 +34,8 @@ void print_prediction(const Case& definition) {
     make_observation(observation, simulation->particles(), definition.grid.cell);
   const Particles& particles = simulation->particles();
   fmt::print("{}: {}\n", definition.file, definition.title);
-  fmt::print("  physics         {}, {}-D, {}, {}, {}\n", definition.physics, definition.dimension(), definition.scheme.shape,
-             definition.scheme.transfer, definition.scheme.stress_update);
+  fmt::print("  physics         {}, {}-D, {}, {}, {}\n", definition.physics, definition.dimension(),
+             definition.scheme.shape, definition.scheme.transfer, definition.scheme.stress_update);
   fmt::print("  particles       {}\n", particles.size());
   for (std::size_t m = 0; m < particles.material_names.size(); ++m)
     fmt::print("    {:<24}{}\n", particles.material_names[m],
@@ -48,7 +48,8 @@ void print_prediction(const Case& definition) {
   }
   if (definition.scheme.fixed_time_step) dt = *definition.scheme.fixed_time_step;
   const double steps = std::ceil(definition.end_time / dt);
-  fmt::print("  time step       {:.4g} s {}\n", dt, definition.scheme.fixed_time_step ? "(fixed by the case)" : "(computed)");
+  fmt::print("  time step       {:.4g} s {}\n", dt,
+             definition.scheme.fixed_time_step ? "(fixed by the case)" : "(computed)");
   fmt::print("  steps           about {:.0f} to {:g} s\n", steps, definition.end_time);
   const double seconds = time_a_step(*simulation, definition.end_time);
   fmt::print("  run time        about {} on {} thread{} ({:.3g} million particle-steps per second)\n",

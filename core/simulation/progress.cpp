@@ -34,8 +34,8 @@ void Progress::show(const Simulation& simulation, const StepInfo& info) {
   const double done = simulation.time() - start_time_;
   const double left = done > 0 ? elapsed * (end_time_ - simulation.time()) / done : INFINITY;
   const std::string line =
-      fmt::format("{:8.3f} of {:g} s | step {} | dt {:.3g} s ({}) | fastest {:.3g} m/s | {} left", simulation.time(), end_time_,
-                  simulation.steps(), info.dt, info.limiter, info.speed, duration_text(left));
+      fmt::format("{:8.3f} of {:g} s | step {} | dt {:.3g} s ({}) | fastest {:.3g} m/s | {} left", simulation.time(),
+                  end_time_, simulation.steps(), info.dt, info.limiter, info.speed, duration_text(left));
   if (terminal_)
     fmt::print("\r{}\x1b[K", line);
   else

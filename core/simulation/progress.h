@@ -8,8 +8,8 @@
 
 namespace sluice {
 
-/// One line, redrawn on a terminal a few times a second, written now and then where there is none: time, step, dt and what
-/// limits it, speed, time left.
+/// One line, redrawn on a terminal a few times a second, written now and then where there is none: time, step, dt and
+/// what limits it, speed, time left.
 class Progress {
  public:
   Progress(bool quiet, double start_time, double end_time);

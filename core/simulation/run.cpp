@@ -12,6 +12,7 @@
 #include "core/output/archive.h"
 #include "core/output/csv_table.h"
 #include "core/output/observation.h"
+#include "core/output/pictures.h"
 #include "core/output/results.h"
 #include "core/output/summary.h"
 #include "core/simulation/guard.h"
@@ -41,9 +42,10 @@ void prepare_folder(const RunOptions& options) {
     return;
   }
   if (fs::exists(options.folder) && !fs::is_empty(options.folder) && !options.force)
-    throw CaseError(fmt::format("the output folder {} is not empty; take another --output, continue it with --resume, or "
-                                "overwrite it with --force",
-                                options.folder.string()));
+    throw CaseError(
+        fmt::format("the output folder {} is not empty; take another --output, continue it with --resume, or "
+                    "overwrite it with --force",
+                    options.folder.string()));
   fs::create_directories(options.folder);
 }
 
@@ -55,7 +57,8 @@ std::string text_of(const std::string& file) {
 /// Events at multiples of an interval of simulated time.
 class Schedule {
  public:
-  Schedule(double every, double now) : every_(every), count_(every > 0 ? std::floor(now / every * (1 + 1e-12)) + 1 : 0) {}
+  Schedule(double every, double now)
+      : every_(every), count_(every > 0 ? std::floor(now / every * (1 + 1e-12)) + 1 : 0) {}
   double next() const { return every_ > 0 ? count_ * every_ : INFINITY; }
   bool due(double time) const { return time >= next() * (1 - 1e-12); }
   void pass(double time) {
@@ -69,9 +72,14 @@ class Schedule {
 class Run {
  public:
   Run(const Case& definition, const RunOptions& options)
-      : case_(definition), options_(options), simulation_(Simulation::create(definition)), checkpoints_(options.folder) {
-    if (options.resume) resume();
-    else checkpoints_.clear();
+      : case_(definition),
+        options_(options),
+        simulation_(Simulation::create(definition)),
+        checkpoints_(options.folder) {
+    if (options.resume)
+      resume();
+    else
+      checkpoints_.clear();
     first_step_ = simulation_->steps();
     open_outputs();
   }
@@ -112,6 +120,7 @@ class Run {
     results_->finish();
     summarise("end_time_reached");
     report();
+    draw();
     return exit_code::done;
   }
 
@@ -120,14 +129,16 @@ class Run {
     const Checkpoint checkpoint = checkpoints_.load_latest();
     for (const auto& warning : checkpoint.warnings) fmt::print(stderr, "warning: {}\n", warning);
     if (checkpoint.archive.texts.at("case") != identity())
-      throw CaseError(fmt::format("--resume: the run in {} is of another case: what stands in the case file (or --set) has "
-                                  "changed, apart from end_time and output",
-                                  options_.folder.string()));
+      throw CaseError(
+          fmt::format("--resume: the run in {} is of another case: what stands in the case file (or --set) has "
+                      "changed, apart from end_time and output",
+                      options_.folder.string()));
     simulation_->restore(checkpoint.archive);
     earlier_seconds_ = checkpoint.archive.reals.at("wall_seconds").at(0);
     earlier_particle_steps_ = checkpoint.archive.reals.at("particle_steps").at(0);
     if (!options_.quiet)
-      fmt::print("resuming at time {:g} s, step {}, from {}\n", checkpoint.time, checkpoint.step, checkpoint.file.string());
+      fmt::print("resuming at time {:g} s, step {}, from {}\n", checkpoint.time, checkpoint.step,
+                 checkpoint.file.string());
   }
 
   /// What must not change between the parts of a run: everything but when it ends and what it writes.
@@ -154,7 +165,8 @@ class Run {
     std::vector<std::string> history = {"step", "time_s", "dt_s", "limiter", "max_speed_m_s"};
     for (const auto& energy : simulation_->energies()) history.push_back(energy.first + "_energy_J");
     std::vector<std::string> observed = {"step", "time_s"};
-    for (std::size_t i = 0; i < observations_.size(); ++i) observed.push_back(case_.observe[i].name + "_" + unit_word(i));
+    for (std::size_t i = 0; i < observations_.size(); ++i)
+      observed.push_back(case_.observe[i].name + "_" + unit_word(i));
     const double now = simulation_->time();
     if (options_.resume) {
       results_.emplace(options_.folder, provenance, simulation_->particles(), now);
@@ -235,11 +247,21 @@ class Run {
     summary_ = s;
   }
 
+  /// The pictures that the case asks for. A run does not fail for want of Python.
+  void draw() const {
+    if (case_.output.pictures.empty()) return;
+    if (!draw_pictures({options_.folder, case_.output.pictures, case_.output.picture_times, true, true}))
+      fmt::print(stderr, "warning: the pictures could not be drawn; the results are complete, try `sluice plot {}`\n",
+                 options_.folder.string());
+    else if (!options_.quiet)
+      fmt::print("pictures in {}\n", (options_.folder / "pictures").string());
+  }
+
   void report() const {
     if (options_.quiet) return;
     fmt::print("done: {} steps of {} particles in {:.2f} s on {} thread{}: {:.3g} million particle-steps per second\n",
-               summary_.steps, summary_.particles, summary_.wall_seconds, summary_.threads, summary_.threads == 1 ? "" : "s",
-               summary_.particle_steps_per_second / 1e6);
+               summary_.steps, summary_.particles, summary_.wall_seconds, summary_.threads,
+               summary_.threads == 1 ? "" : "s", summary_.particle_steps_per_second / 1e6);
     for (const auto& [stage, seconds] : summary_.stage_seconds) fmt::print("  {:<10}{:9.2f} s\n", stage, seconds);
     for (std::size_t i = 0; i < observations_.size(); ++i)
       fmt::print("  {} = {:.4g} {}\n", case_.observe[i].name, last_observed_.at(case_.observe[i].name),

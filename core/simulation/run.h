@@ -25,8 +25,8 @@ inline constexpr int interrupted = 130;
 }  // namespace exit_code
 
 /// Runs the case to its end time and writes everything that the folder is to hold. Returns exit_code::done or
-/// exit_code::interrupted. Throws CaseError, PhysicsError, OutflowError and std::runtime_error; before a PhysicsError or
-/// OutflowError leaves, the summary is written with the reason.
+/// exit_code::interrupted. Throws CaseError, PhysicsError, OutflowError and std::runtime_error; before a PhysicsError
+/// or OutflowError leaves, the summary is written with the reason.
 int run_case(const Case& definition, const RunOptions& options);
 
 }  // namespace sluice

@@ -56,10 +56,7 @@ class SimulationOf final : public Simulation {
     store_particles(scene_.particles, archive);
     archive.integers["blocks"] = scene_.blocks.record();
     archive.integers["step"] = {scene_.step, static_cast<std::int64_t>(removed_)};
-    archive.reals["loop"] = {scene_.time,
-                             scene_.previous_dt,
-                             scene_.travelled,
-                             scene_.motion.largest_speed_squared,
+    archive.reals["loop"] = {scene_.time, scene_.previous_dt, scene_.travelled, scene_.motion.largest_speed_squared,
                              scene_.motion.largest_strain_rate};
     module_->store(archive);
   }

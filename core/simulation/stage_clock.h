@@ -17,7 +17,9 @@ class StageClock {
   class Scope {
    public:
     Scope(StageClock& clock, Stage stage) : clock_(clock), stage_(stage), start_(now()) {}
-    ~Scope() { clock_.seconds_[static_cast<std::size_t>(stage_)] += std::chrono::duration<double>(now() - start_).count(); }
+    ~Scope() {
+      clock_.seconds_[static_cast<std::size_t>(stage_)] += std::chrono::duration<double>(now() - start_).count();
+    }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
 

@@ -16,7 +16,7 @@ void activate_blocks(Scene<Dim>& scene, double allowance) {
 template <int Dim>
 void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt) {
   const auto timing = scene.clock.time(Stage::scatter);
-  parallel_ranges(scene.blocks.shares(), [&](std::size_t b, std::size_t) {
+  parallel_for(scene.blocks.particle_blocks().size(), [&](std::size_t b) {
     scene.shape->scatter(what, scene.scatter_input(scene.blocks.particle_blocks()[b]), impulse_dt,
                          scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
   });
@@ -60,31 +60,30 @@ SLUICE_ALWAYS_INLINE void store_motion(Lane velocity, Lane change, Lane* motion)
 
 }  // namespace
 
-/// v = p / m + kick (f / m + g) and dv = v - p / m on one block; `force` may be null. (Multi-target functions need external
-/// linkage: the linker chooses among their clones.)
+/// v = p / m + kick (f / m + g) and dv = v - p / m on one block; `force` may be null. (Multi-target functions need
+/// external linkage: the linker chooses among their clones.)
 template <int Dim>
 SLUICE_MULTITARGET void accelerate(const NodeBlock<Dim>& nodes, const Lane* momentum, const Lane* force, double kick,
                                    const Vector<Dim>& gravity, double lightest, Lane* motion) {
   Lane gravity_kick{};
   for (int a = 0; a < Dim; ++a) gravity_kick[a] = kick * gravity[a];
-  for_reached_nodes(nodes, [&](int n) __attribute__((always_inline)) {
-    const double mass = momentum[n][0];
-    const bool heavy = mass > lightest;
-    const double inverse = heavy ? 1 / mass : 0;
-    const Lane before = inverse * vector_part<Dim>(momentum[n]);
-    Lane change = heavy ? gravity_kick : Lane{};
-    if (force != nullptr) change += (kick * inverse) * vector_part<Dim>(force[n]);
-    store_motion<Dim>(before + change, change, motion + n * motion_lanes<Dim>);
-  });
+  for_reached_nodes(
+      nodes, [&](int n) __attribute__((always_inline)) {
+        const double mass = momentum[n][0];
+        const bool heavy = mass > lightest;
+        const double inverse = heavy ? 1 / mass : 0;
+        const Lane before = inverse * vector_part<Dim>(momentum[n]);
+        Lane change = heavy ? gravity_kick : Lane{};
+        if (force != nullptr) change += (kick * inverse) * vector_part<Dim>(force[n]);
+        store_motion<Dim>(before + change, change, motion + n * motion_lanes<Dim>);
+      });
 }
 
 namespace {
 
 template <int Dim>
 double lightest_node(const Scene<Dim>& scene) {
-  return scene.particles.size() == 0
-             ? 0
-             : negligible_mass * scene.particles.columns.values(scene.particles.mass)[0];
+  return scene.particles.size() == 0 ? 0 : negligible_mass * scene.particles.columns.values(scene.particles.mass)[0];
 }
 
 }  // namespace
@@ -120,7 +119,7 @@ void prepare(const Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces) {
   constexpr std::size_t columns = symmetric_components<Dim> + spin_components<Dim>;
   const std::size_t tile = scene.nodes.tile_size() * motion_lanes<Dim>;
   const std::size_t length = (scene.blocks.largest_block() + 15) / 8 * 8;
-  workspaces.resize(scene.blocks.shares().size() - 1);
+  workspaces.resize(static_cast<std::size_t>(thread_count()));
   for (auto& w : workspaces) {
     w.motion_tile.resize(tile);
     if (w.numbers.size() < columns * length) w.numbers.resize(columns * length);
@@ -145,11 +144,11 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
   return update;
 }
 
-#define SLUICE_INSTANTIATE(Dim)                                          \
-  template void activate_blocks<Dim>(Scene<Dim>&, double);               \
-  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double);          \
-  template void velocity_from_momentum<Dim>(Scene<Dim>&);                \
-  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool);     \
+#define SLUICE_INSTANTIATE(Dim)                                                \
+  template void activate_blocks<Dim>(Scene<Dim>&, double);                     \
+  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double);                \
+  template void velocity_from_momentum<Dim>(Scene<Dim>&);                      \
+  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool);           \
   template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&); \
   template MotionUpdate<Dim> motion_update<Dim>(Scene<Dim>&, double, ColumnId);
 SLUICE_INSTANTIATE(2)

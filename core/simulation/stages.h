@@ -16,8 +16,8 @@ struct Workspace {
   StrainIncrements<Dim> strain;  ///< views into `numbers`, long enough for the largest block
 };
 
-/// Sorts the particles into blocks if one of them may have left the tile of its block: if `travelled` exceeds `allowance`
-/// cells (at most tile_margin).
+/// Sorts the particles into blocks if one of them may have left the tile of its block: if `travelled` exceeds
+/// `allowance` cells (at most tile_margin).
 template <int Dim>
 void activate_blocks(Scene<Dim>& scene, double allowance = tile_margin);
 
@@ -38,8 +38,8 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
 template <int Dim, class Body>
 void for_each_block(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, const Body& body) {
   prepare(scene, workspaces);
-  parallel_ranges(scene.blocks.shares(), [&](std::size_t b, std::size_t range) {
-    body(b, scene.blocks.particle_blocks()[b], workspaces[range]);
+  parallel_for(scene.blocks.particle_blocks().size(), [&](std::size_t b, int thread) {
+    body(b, scene.blocks.particle_blocks()[b], workspaces[static_cast<std::size_t>(thread)]);
   });
 }
 

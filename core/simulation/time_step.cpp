@@ -34,9 +34,10 @@ TimeStepLimit fixed_step(const PhysicsModule<Dim>& module, const Scene<Dim>& sce
   const double dt = *scene.scheme.fixed_time_step;
   const TimeStepLimit limit = smallest(module.hard_limits(scene));
   if (dt > limit.seconds)
-    throw CaseError(fmt::format("scheme.time_step of {:g} s exceeds the {} limit of {:.4g} s at time {:g} s (step {}); take a "
-                                "smaller one, or `time_step: computed`",
-                                dt, limit.name, limit.seconds, scene.time, scene.step));
+    throw CaseError(
+        fmt::format("scheme.time_step of {:g} s exceeds the {} limit of {:.4g} s at time {:g} s (step {}); take a "
+                    "smaller one, or `time_step: computed`",
+                    dt, limit.name, limit.seconds, scene.time, scene.step));
   return {dt, "fixed"};
 }
 
@@ -58,8 +59,8 @@ TimeStepLimit choose_time_step(const PhysicsModule<Dim>& module, const Scene<Dim
   return {dt, dt < 0.5 * limit.seconds ? "output" : limit.name};
 }
 
-#define SLUICE_INSTANTIATE(Dim)                                                                                     \
-  template std::vector<TimeStepLimit> explicit_limits<Dim>(const Scene<Dim>&, double, const SafetyFactors&);        \
+#define SLUICE_INSTANTIATE(Dim)                                                                              \
+  template std::vector<TimeStepLimit> explicit_limits<Dim>(const Scene<Dim>&, double, const SafetyFactors&); \
   template TimeStepLimit choose_time_step<Dim>(const PhysicsModule<Dim>&, const Scene<Dim>&, double);
 SLUICE_INSTANTIATE(2)
 SLUICE_INSTANTIATE(3)

@@ -23,8 +23,8 @@ std::vector<TimeStepLimit> explicit_limits(const Scene<Dim>& scene, double faste
 TimeStepLimit smallest(const std::vector<TimeStepLimit>& limits);
 
 /// The next step: the fixed one of the case, or the smallest limit, which may grow by a tenth a step. Shortened so that
-/// `until` is met after a whole number of about equal steps; the limiter is called "output" if that more than halves it.
-/// Throws CaseError if the fixed step exceeds a hard limit.
+/// `until` is met after a whole number of about equal steps; the limiter is called "output" if that more than halves
+/// it. Throws CaseError if the fixed step exceeds a hard limit.
 template <int Dim>
 TimeStepLimit choose_time_step(const PhysicsModule<Dim>& module, const Scene<Dim>& scene, double until);
 

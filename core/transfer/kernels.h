@@ -1,8 +1,8 @@
 /// The transfer kernels, written once for every shape function and dimension.
 ///
-/// Particles are taken in chunks. Within a chunk, what is the same for all particles (weights, updates) is done in loops
-/// over particles that the compiler vectorizes; the sums over nodes are done particle by particle, with one vector
-/// operation a node and field lane. Included only by the files that define a shape function.
+/// Particles are taken in chunks. Within a chunk, what is the same for all particles (weights, updates) is done in
+/// loops over particles that the compiler vectorizes; the sums over nodes are done particle by particle, with one
+/// vector operation a node and field lane. Included only by the files that define a shape function.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +38,8 @@ constexpr int tile_stride(int axis) {
   return power(tile_row<Dim, Shape>, axis);
 }
 
-/// The shape functions of one axis. Written over plain pointers and without calls, or the compiler will not vectorize it.
+/// The shape functions of one axis. Written over plain pointers and without calls, or the compiler will not vectorize
+/// it.
 template <class Shape, bool Distances, bool AffineWeights, int Nodes = Shape::degree + 1>
 SLUICE_ALWAYS_INLINE void weigh_axis(const double* __restrict x, int count, double low, double h, double last_cell,
                                      double (*__restrict values)[chunk_size], double (*__restrict slopes)[chunk_size],
@@ -84,8 +85,8 @@ SLUICE_ALWAYS_INLINE void weigh(const BlockParticles<Dim>& block, std::uint32_t 
 
 /// sigma in the notation of `symmetric_components`, as the columns that grad N is multiplied with.
 template <int Dim>
-SLUICE_ALWAYS_INLINE void stress_columns(const std::array<const double*, symmetric_components<Dim>>& stress, double factor,
-                                  std::uint32_t p, Lane* column) {
+SLUICE_ALWAYS_INLINE void stress_columns(const std::array<const double*, symmetric_components<Dim>>& stress,
+                                         double factor, std::uint32_t p, Lane* column) {
   if constexpr (Dim == 2) {
     const double xy = factor * stress[3][p];
     column[0] = Lane{0, factor * stress[0][p], xy, 0};
@@ -99,7 +100,8 @@ SLUICE_ALWAYS_INLINE void stress_columns(const std::array<const double*, symmetr
 }
 
 template <int Dim>
-SLUICE_ALWAYS_INLINE Lane mass_and_momentum(double mass, const std::array<const double*, Dim>& velocity, std::uint32_t p) {
+SLUICE_ALWAYS_INLINE Lane mass_and_momentum(double mass, const std::array<const double*, Dim>& velocity,
+                                            std::uint32_t p) {
   if constexpr (Dim == 2)
     return Lane{mass, mass * velocity[0][p], mass * velocity[1][p], 0};
   else
@@ -110,7 +112,7 @@ SLUICE_ALWAYS_INLINE Lane mass_and_momentum(double mass, const std::array<const 
 /// `Affine` and `Flux` say which of the terms are there.
 template <int Dim, class Shape, bool Affine, bool Flux>
 SLUICE_ALWAYS_INLINE void add_to_nodes(const ChunkWeights<Dim, Shape>& w, int p, Lane base, const Lane* slope,
-                                const Lane* flux, Lane* tile) {
+                                       const Lane* flux, Lane* tile) {
   constexpr int nodes = Shape::degree + 1;
   Lane* const origin = tile + w.base[p];
   for (int k = 0; k < (Dim == 3 ? nodes : 1); ++k) {
@@ -173,7 +175,8 @@ SLUICE_MULTITARGET void scatter(const ScatterInput<Dim>& in, double impulse_dt, 
     for (int k = 0; k < count; ++k) {
       const std::uint32_t p = begin + static_cast<std::uint32_t>(k);
       Lane flux[Dim] = {}, slope[Dim] = {};
-      if constexpr (impulse || force) stress_columns<Dim>(in.stress, -in.volume[p] * (impulse ? impulse_dt : 1), p, flux);
+      if constexpr (impulse || force)
+        stress_columns<Dim>(in.stress, -in.volume[p] * (impulse ? impulse_dt : 1), p, flux);
       if constexpr (Affine) {
         const double m = in.mass[p];
         for (int b = 0; b < Dim; ++b) {
@@ -246,12 +249,14 @@ struct ChunkGathered {
   alignas(64) Lane gradient[Dim][chunk_size];
   alignas(64) Lane affine[Dim][chunk_size];
 
-  static SLUICE_ALWAYS_INLINE const double* numbers(const Lane* lanes) { return reinterpret_cast<const double*>(lanes); }
+  static SLUICE_ALWAYS_INLINE const double* numbers(const Lane* lanes) {
+    return reinterpret_cast<const double*>(lanes);
+  }
 };
 
 template <int Dim, class Shape, bool Value, bool Gradient, bool Affine>
 SLUICE_ALWAYS_INLINE void sum_chunk(const ChunkWeights<Dim, Shape>& w, int count, const Lane* motion_tile,
-                             ChunkGathered<Dim>& out) {
+                                    ChunkGathered<Dim>& out) {
   for (int p = 0; p < count; ++p) {
     const Gathered<Dim> g = sum_nodes<Dim, Shape, Value, Gradient, Affine>(w, p, motion_tile);
     if constexpr (Value)
@@ -266,7 +271,7 @@ SLUICE_ALWAYS_INLINE void sum_chunk(const ChunkWeights<Dim, Shape>& w, int count
 /// Strain and rotation increments of a chunk from its velocity gradients; returns the largest absolute component.
 template <int Dim>
 SLUICE_ALWAYS_INLINE double write_strain(const ChunkGathered<Dim>& g, int count, double dt, std::uint32_t at,
-                                  const StrainIncrements<Dim>& out) {
+                                         const StrainIncrements<Dim>& out) {
   const double* __restrict gx = g.numbers(g.gradient[0]);
   const double* __restrict gy = g.numbers(g.gradient[1]);
   double* __restrict e[symmetric_components<Dim>];
@@ -330,19 +335,21 @@ SLUICE_MULTITARGET double gather_strain(const BlockParticles<Dim>& block, const 
 
 /// Velocity, position and affine field of a chunk; `begin` is the chunk's first particle.
 template <int Dim, bool Affine>
-SLUICE_ALWAYS_INLINE void move(const ChunkGathered<Dim>& g, const BlockParticles<Dim>& block, std::uint32_t begin, int count,
-                        const MotionUpdate<Dim>& update, MotionReport& report) {
+SLUICE_ALWAYS_INLINE void move(const ChunkGathered<Dim>& g, const BlockParticles<Dim>& block, std::uint32_t begin,
+                               int count, const MotionUpdate<Dim>& update, MotionReport& report) {
   const double flip = update.flip_fraction, pic = 1 - flip, dt = update.dt;
   alignas(64) double speed_squared[chunk_size] = {};
   double travel = 0;
   int outside = 0;
   for (int a = 0; a < Dim; ++a) {
     const double* __restrict nodes = g.numbers(g.value[0]) + a;
-    const double* __restrict change = Dim == 2 ? g.numbers(g.value[0]) + 2 + a : g.numbers(g.value[motion_lanes<Dim> - 1]) + a;
+    const double* __restrict change =
+        Dim == 2 ? g.numbers(g.value[0]) + 2 + a : g.numbers(g.value[motion_lanes<Dim> - 1]) + a;
     double* __restrict v = update.velocity[static_cast<std::size_t>(a)] + begin;
     const double* x = block.position[static_cast<std::size_t>(a)] + begin;
     double* x_new = update.position[static_cast<std::size_t>(a)] + begin;  // may be x itself
-    const double low = block.grid->min[static_cast<std::size_t>(a)], high = block.grid->max[static_cast<std::size_t>(a)];
+    const double low = block.grid->min[static_cast<std::size_t>(a)],
+                 high = block.grid->max[static_cast<std::size_t>(a)];
     const double cells_per_metre = 1 / block.grid->cell[static_cast<std::size_t>(a)];
 #pragma omp simd reduction(max : travel) reduction(+ : outside)
     for (int p = 0; p < count; ++p) {
@@ -393,8 +400,8 @@ SLUICE_MULTITARGET MotionReport gather_motion(const BlockParticles<Dim>& block, 
     if constexpr (affine_is_gradient)
       for (int a = 0; a < Dim; ++a) std::copy_n(g.gradient[a], count, g.affine[a]);
     if constexpr (Strain)
-      largest_strain = std::max(largest_strain,
-                                write_strain<Dim>(g, count, update.dt, begin - block.begin, *update.strain));
+      largest_strain =
+          std::max(largest_strain, write_strain<Dim>(g, count, update.dt, begin - block.begin, *update.strain));
     move<Dim, Affine>(g, block, begin, count, update, report);
   }
   if constexpr (Strain) report.largest_strain_rate = largest_strain / update.dt;
@@ -471,15 +478,13 @@ class ShapeKernelsOf final : public ShapeKernels<Dim> {
   }
 };
 
-/// Registers `Shape` under `name`, for 2-D and 3-D. `Shape` must have external linkage: the linker chooses among the clones of
-/// its kernels.
-#define SLUICE_REGISTER_SHAPE(tag, Shape, name, summary)                                         \
-  const bool tag##_registered =                                                                  \
-      shape_registry<2>().add(name, {summary, {}}, [] {                                          \
-        return std::unique_ptr<ShapeKernels<2>>(std::make_unique<ShapeKernelsOf<2, Shape>>());   \
-      }) &&                                                                                      \
-      shape_registry<3>().add(name, {summary, {}}, [] {                                          \
-        return std::unique_ptr<ShapeKernels<3>>(std::make_unique<ShapeKernelsOf<3, Shape>>());   \
-      });
+/// Registers `Shape` under `name`, for 2-D and 3-D. `Shape` must have external linkage: the linker chooses among the
+/// clones of its kernels.
+#define SLUICE_REGISTER_SHAPE(tag, Shape, name, summary)                                   \
+  const bool tag##_registered = shape_registry<2>().add(name, {summary, {}}, [] {          \
+    return std::unique_ptr<ShapeKernels<2>>(std::make_unique<ShapeKernelsOf<2, Shape>>()); \
+  }) && shape_registry<3>().add(name, {summary, {}}, [] {                                  \
+    return std::unique_ptr<ShapeKernels<3>>(std::make_unique<ShapeKernelsOf<3, Shape>>()); \
+  });
 
 }  // namespace sluice

@@ -4,14 +4,15 @@ namespace sluice {
 namespace shape {
 
 /// Quadratic B-splines with knots on the cell edges, the end knots repeated (open knot vector), so that constants and
-/// linear fields are reproduced up to the wall and the outermost node carries the value at the wall: docs/theory.md, eq. (13).
+/// linear fields are reproduced up to the wall and the outermost node carries the value at the wall: docs/theory.md,
+/// eq. (13).
 struct QuadraticBSpline {
   static constexpr int degree = 2;
 
   /// At t in [0, 1) of a cell: values N, slopes dN/dt, and offsets of the nodes from the cell's lower edge, in cells.
   /// `first` and `last` are 1 in the first and last cell of the axis, else 0.
   static SLUICE_ALWAYS_INLINE void evaluate(double t, double first, double last, double* value, double* slope,
-                                     double* offset) {
+                                            double* offset) {
     const double a = 0.5 + 0.5 * first, b = 0.5 + 0.5 * last, s = 1 - t;
     value[0] = a * s * s;
     value[2] = b * t * t;
@@ -30,10 +31,12 @@ struct QuadraticBSpline {
     // Weights by arithmetic, not by branches, so that the loop over particles is vectorized.
     const double inside = (1 - first) * (1 - last), lower = first * (1 - last), upper = (1 - first) * last,
                  both = first * last;
-    weight[0] = inside * (2 * s * s * (-0.5 - t)) - lower * (s * s * p) - upper * (0.5 * s * (1.5 - s) * q) - both * 2 * s;
+    weight[0] =
+        inside * (2 * s * s * (-0.5 - t)) - lower * (s * s * p) - upper * (0.5 * s * (1.5 - s) * q) - both * 2 * s;
     weight[1] = inside * (4 * (0.5 + t * s) * (0.5 - t)) + lower * ((2 - 1.5 * t) * (0.5 - t) * p) -
                 upper * ((2 - 1.5 * s) * (0.5 - s) * q) + both * (2 - 4 * t);
-    weight[2] = inside * (2 * t * t * (1.5 - t)) + lower * (0.5 * t * (1.5 - t) * p) + upper * (t * t * q) + both * 2 * t;
+    weight[2] =
+        inside * (2 * t * t * (1.5 - t)) + lower * (0.5 * t * (1.5 - t) * p) + upper * (t * t * q) + both * 2 * t;
   }
   /// Position of node i of an axis of n cells, in cells from the lower end.
   static double node_offset(int i, int n) { return i == 0 ? 0 : i == n + 1 ? n : i - 0.5; }

@@ -42,28 +42,30 @@ struct ScatterInput {
   BlockParticles<Dim> particles;
   const double* mass;
   std::array<const double*, Dim> velocity;
-  std::array<const double*, Dim * Dim> affine{};  ///< C of APIC, row by row: C[a][b] = component a, direction b; or null
+  std::array<const double*, Dim * Dim>
+      affine{};  ///< C of APIC, row by row: C[a][b] = component a, direction b; or null
   const double* volume;
   std::array<const double*, symmetric_components<Dim>> stress;
 };
 
 /// What a scatter adds to the tile(s) of its block; tiles are zeroed first.
 enum class ScatterWhat {
-  momentum,            ///< {m, m v}
-  force,               ///< {0, -V sigma grad N}
-  momentum_and_force,  ///< both, to two tiles
-  momentum_and_impulse ///< {m, m v + dt f} to one tile
+  momentum,             ///< {m, m v}
+  force,                ///< {0, -V sigma grad N}
+  momentum_and_force,   ///< both, to two tiles
+  momentum_and_impulse  ///< {m, m v + dt f} to one tile
 };
 
 /// How a particle's velocity follows from its nodes.
 template <int Dim>
 struct MotionUpdate {
-  double dt;                                  ///< length of the step [s]
-  double flip_fraction;                       ///< not used with an affine transfer
-  std::array<double*, Dim> velocity;          ///< in and out
-  std::array<double*, Dim> position;          ///< out: position + dt * velocity of the nodes
-  std::array<double*, Dim * Dim> affine{};    ///< out: C of APIC; null without it
-  const StrainIncrements<Dim>* strain = nullptr;  ///< out, indexed from 0 at the block's first particle; null: not wanted
+  double dt;                                ///< length of the step [s]
+  double flip_fraction;                     ///< not used with an affine transfer
+  std::array<double*, Dim> velocity;        ///< in and out
+  std::array<double*, Dim> position;        ///< out: position + dt * velocity of the nodes
+  std::array<double*, Dim * Dim> affine{};  ///< out: C of APIC; null without it
+  const StrainIncrements<Dim>* strain =
+      nullptr;  ///< out, indexed from 0 at the block's first particle; null: not wanted
 };
 
 /// What the time loop wants to know of a block after its particles moved.
@@ -100,7 +102,7 @@ class ShapeKernels {
                        Lane* force_tile) const = 0;
   /// Strain increments dt * sym grad v from the motion tile. Returns the largest absolute component.
   virtual double gather_strain(const BlockParticles<Dim>& particles, const Lane* motion_tile, double dt,
-                             const StrainIncrements<Dim>& out) const = 0;
+                               const StrainIncrements<Dim>& out) const = 0;
   virtual MotionReport gather_motion(const BlockParticles<Dim>& particles, const Lane* motion_tile,
                                      const MotionUpdate<Dim>& update) const = 0;
 };

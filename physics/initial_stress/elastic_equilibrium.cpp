@@ -139,8 +139,8 @@ class Assembly {
         for (int d = 0; d < Dim; ++d) dot += s.gradient[a][d] * s.gradient[b][d];
         for (int r = 0; r < Dim; ++r)
           for (int c = 0; c < Dim; ++c)
-            stiffness(i * Dim + r, j * Dim + c) +=
-                volume * (e.lambda * s.gradient[a][r] * s.gradient[b][c] + e.shear * s.gradient[a][c] * s.gradient[b][r]);
+            stiffness(i * Dim + r, j * Dim + c) += volume * (e.lambda * s.gradient[a][r] * s.gradient[b][c] +
+                                                             e.shear * s.gradient[a][c] * s.gradient[b][r]);
         const double diagonal = volume * e.shear * dot + mass_factor_ * mass * s.value[a] * s.value[b];
         for (int d = 0; d < Dim; ++d) stiffness(i * Dim + d, j * Dim + d) += diagonal;
       }
@@ -213,13 +213,15 @@ void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials) {
   double mean_displacement = 0, extent = 0;
   for (std::size_t p = 0; p < scene.particles.size(); ++p) {
     const auto elasticity = materials[static_cast<std::size_t>(scene.particles.material[p])].elasticity();
-    mean_displacement += set_stress(scene, elasticity, solution, unknowns, p) / static_cast<double>(scene.particles.size());
+    mean_displacement +=
+        set_stress(scene, elasticity, solution, unknowns, p) / static_cast<double>(scene.particles.size());
   }
   for (int a = 0; a < Dim; ++a) extent = std::max(extent, scene.grid.max[a] - scene.grid.min[a]);
   if (!(mean_displacement < 10 * extent))
-    throw CaseError(fmt::format("initial_stress: elastic_equilibrium does not exist: nothing holds the bodies (they would move by "
-                                "{:.3g} m); fix a face of the grid that they touch, normal to gravity at least",
-                                mean_displacement));
+    throw CaseError(
+        fmt::format("initial_stress: elastic_equilibrium does not exist: nothing holds the bodies (they would move by "
+                    "{:.3g} m); fix a face of the grid that they touch, normal to gravity at least",
+                    mean_displacement));
 }
 
 template void elastic_equilibrium<2>(Scene<2>&, const Materials<2>&);

@@ -10,8 +10,10 @@ const Schema<InitialStress>& schema() {
   using enum InitialStress::Method;
   static const auto declared =
       Schema<InitialStress>("initial_stress")
-          .choice("method", &InitialStress::method, {{"none", none}, {"uniform", uniform}, {"elastic_equilibrium", elastic_equilibrium}},
-                  "How the stress before the first step is found: none; the same everywhere; or linear-elastic equilibrium under "
+          .choice("method", &InitialStress::method,
+                  {{"none", none}, {"uniform", uniform}, {"elastic_equilibrium", elastic_equilibrium}},
+                  "How the stress before the first step is found: none; the same everywhere; or linear-elastic "
+                  "equilibrium under "
                   "gravity, stresses kept and displacements dropped.",
                   none)
           .quantities("stress", &InitialStress::stress, unit::stress, any_number, {{4, 6}},
@@ -38,9 +40,13 @@ std::vector<FieldDoc> initial_stress_docs() { return schema().docs(); }
 template <int Dim>
 void apply_initial_stress(const InitialStress& initial_stress, Scene<Dim>& scene, const Materials<Dim>& materials) {
   switch (initial_stress.method) {
-    case InitialStress::Method::none: return;
-    case InitialStress::Method::elastic_equilibrium: elastic_equilibrium(scene, materials); return;
-    case InitialStress::Method::uniform: break;
+    case InitialStress::Method::none:
+      return;
+    case InitialStress::Method::elastic_equilibrium:
+      elastic_equilibrium(scene, materials);
+      return;
+    case InitialStress::Method::uniform:
+      break;
   }
   if (initial_stress.stress.size() != symmetric_components<Dim>)
     throw CaseError("initial_stress.stress: expected " + std::to_string(symmetric_components<Dim>) + " components in " +

@@ -1,7 +1,7 @@
 /// The stress in the ground before anything moves.
 #pragma once
 
-#include "core/case/node.h"
+#include "core/case/schema.h"
 #include "core/simulation/scene.h"
 #include "physics/materials/materials.h"
 
@@ -21,15 +21,17 @@ struct InitialStress {
 /// An absent section means `none`. Throws CaseError.
 InitialStress read_initial_stress(const Node& section);
 Node resolved(const InitialStress& initial_stress);
+/// The keys of the section, for the reference.
+std::vector<FieldDoc> initial_stress_docs();
 
 /// Sets the stress of all particles. Throws CaseError.
 template <int Dim>
 void apply_initial_stress(const InitialStress& initial_stress, Scene<Dim>& scene, const Materials<Dim>& materials);
 
 /// Linear-elastic equilibrium of the particles where they are, under gravity and the faces of the grid: one sparse
-/// factorization of the stiffness matrix on the grid, with the particles as quadrature points and the shape functions of
-/// the scheme. The stresses are kept, the displacements dropped: docs/theory.md, eqs. (30)-(32). A face with friction
-/// holds the material. Throws CaseError if nothing holds the body.
+/// factorization of the stiffness matrix on the grid, with the particles as quadrature points and the shape functions
+/// of the scheme. The stresses are kept, the displacements dropped: docs/theory.md, eqs. (30)-(32). A face with
+/// friction holds the material. Throws CaseError if nothing holds the body.
 template <int Dim>
 void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials);
 

@@ -144,7 +144,7 @@ StressReport Materials<Dim>::update_stress(Particles& particles, const Blocks<Di
     materials_[m]->update(material_batch);
     const auto& e = material_batch.strain_increment;
     const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(particles.mass) + batch.begin,
-                                              columns.data(particles.volume) + batch.begin);
+                                                     columns.data(particles.volume) + batch.begin);
     const double modulus = materials_[m]->elasticity().constrained_modulus();
     report.fastest_wave = std::max(report.fastest_wave, std::sqrt(modulus * volume.largest_specific_volume));
     report.sound = report.sound && volume.sound && stress_update::all_finite(n, material_batch.stress);

@@ -31,8 +31,8 @@ template <int Dim>
 void TotalStress<Dim>::declare(Columns& particles) {
   materials_.declare(particles);
   if (timing_ == StressTiming::musl)
-    next_position_ = particles.declare(
-        {"next_position", "m", Dim, Role::derived, "Position at the end of the step, while stresses are updated.", false});
+    next_position_ = particles.declare({"next_position", "m", Dim, Role::derived,
+                                        "Position at the end of the step, while stresses are updated.", false});
   if (f_bar_) {
     strain_increment_ = particles.declare({"strain_increment", "1", symmetric_components<Dim>, Role::derived,
                                            "Strain increment of the step, before F-bar.", false});
@@ -70,9 +70,15 @@ void TotalStress<Dim>::step(Scene<Dim>& scene, double dt) {
   activate_blocks(scene, f_bar_ ? 0.5 * tile_margin : tile_margin);
   begin_reports(scene);
   switch (timing_) {
-    case StressTiming::usf: step_usf(scene, dt); break;
-    case StressTiming::usl: step_usl(scene, dt); break;
-    case StressTiming::musl: step_musl(scene, dt); break;
+    case StressTiming::usf:
+      step_usf(scene, dt);
+      break;
+    case StressTiming::usl:
+      step_usl(scene, dt);
+      break;
+    case StressTiming::musl:
+      step_musl(scene, dt);
+      break;
   }
   end_motion_reports(scene);
   end_stress_reports(scene);
@@ -208,7 +214,8 @@ StrainIncrements<Dim> TotalStress<Dim>::kept_strain(Scene<Dim>& scene, std::uint
   return strain;
 }
 
-// ---- reports: written by block, summed in block order ----------------------------------------------------------------
+// ---- reports: written by block, summed in block order
+// ----------------------------------------------------------------
 
 template <int Dim>
 void TotalStress<Dim>::begin_reports(const Scene<Dim>& scene) {
@@ -242,7 +249,8 @@ void TotalStress<Dim>::end_stress_reports(const Scene<Dim>& scene) {
   if (!sound || !scene.motion.finite) throw_first_bad_particle(scene);
 }
 
-// ---- reporting ---------------------------------------------------------------------------------------------------------
+// ---- reporting
+// ---------------------------------------------------------------------------------------------------------
 
 template <int Dim>
 std::vector<std::pair<std::string, double>> TotalStress<Dim>::energies(const Scene<Dim>& scene) const {
@@ -263,10 +271,10 @@ const char* const summary =
 
 template <int Dim>
 bool register_module() {
-  return physics_registry<Dim>().add(
-      "total_stress", {summary, {}}, [](const Case& definition) -> std::unique_ptr<PhysicsModule<Dim>> {
-        return std::make_unique<TotalStress<Dim>>(definition);
-      });
+  return physics_registry<Dim>().add("total_stress", {summary, {}},
+                                     [](const Case& definition) -> std::unique_ptr<PhysicsModule<Dim>> {
+                                       return std::make_unique<TotalStress<Dim>>(definition);
+                                     });
 }
 
 const bool registered = register_module<2>() && register_module<3>();

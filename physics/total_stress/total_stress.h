@@ -54,8 +54,8 @@ class TotalStress final : public PhysicsModule<Dim> {
   StressTiming timing_;
   bool f_bar_;
 
-  ColumnId next_position_;                       // MUSL: positions change after the stress update
-  ColumnId strain_increment_, spin_increment_;   // F-bar: strains wait for the means of the cells
+  ColumnId next_position_;                      // MUSL: positions change after the stress update
+  ColumnId strain_increment_, spin_increment_;  // F-bar: strains wait for the means of the cells
   CellAverages<Dim> cells_;
   std::vector<Workspace<Dim>> workspaces_;
   std::vector<MotionReport> motion_;  // by block

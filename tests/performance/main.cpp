@@ -2,8 +2,9 @@
 ///
 ///   sluice_performance [--smoke] [--sizes 1 0.25 0.125]
 ///
-/// Every figure is a rate of bursts taken in turn (plain, linear, quadratic, …, plain, …), so that a machine whose speed drifts
-/// disturbs all alike; ratios are medians of the ratios within a turn. The state is that of the dam while it slides.
+/// Every figure is a rate of bursts taken in turn (plain, linear, quadratic, …, plain, …), so that a machine whose
+/// speed drifts disturbs all alike; ratios are medians of the ratios within a turn. The state is that of the dam while
+/// it slides.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +46,8 @@ struct Plain {
   Plain(const Case& definition, const Simulation& simulation) : dt(*definition.scheme.fixed_time_step) {
     const Particles& ps = simulation.particles();
     const std::size_t n = ps.size();
-    for (auto* column : {&body.x, &body.y, &body.vx, &body.vy, &body.m, &body.V, &body.sxx, &body.syy, &body.szz, &body.sxy})
+    for (auto* column :
+         {&body.x, &body.y, &body.vx, &body.vy, &body.m, &body.V, &body.sxx, &body.syy, &body.szz, &body.sxy})
       column->resize(n);
     body.ep.assign(n, 0);
     body.material.resize(n);
@@ -55,7 +57,8 @@ struct Plain {
     column(ps.position, 0, body.x), column(ps.position, 1, body.y);
     column(ps.velocity, 0, body.vx), column(ps.velocity, 1, body.vy);
     column(ps.mass, 0, body.m), column(ps.volume, 0, body.V);
-    column(ps.stress, 0, body.sxx), column(ps.stress, 1, body.syy), column(ps.stress, 2, body.szz), column(ps.stress, 3, body.sxy);
+    column(ps.stress, 0, body.sxx), column(ps.stress, 1, body.syy), column(ps.stress, 2, body.szz),
+        column(ps.stress, 3, body.sxy);
     for (std::size_t p = 0; p < n; ++p) body.material[static_cast<std::size_t>(ps.id[p])] = ps.material[p];
     const GridCase& g = definition.grid;
     grid.x0 = g.min[0], grid.y0 = g.min[1], grid.h = g.cell[0];
@@ -63,12 +66,18 @@ struct Plain {
     grid.ny = static_cast<int>(std::lround((g.max[1] - g.min[1]) / g.cell[1])) + 1;
     grid.friction = definition.faces.at("bottom").friction;
     const auto nodes = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
-    for (auto* field : {&grid.m, &grid.px, &grid.py, &grid.fx, &grid.fy, &grid.vx, &grid.vy, &grid.ax, &grid.ay}) field->resize(nodes);
+    for (auto* field : {&grid.m, &grid.px, &grid.py, &grid.fx, &grid.fy, &grid.vx, &grid.vy, &grid.ax, &grid.ay})
+      field->resize(nodes);
     // Table 1 of the case, in the order of its materials.
     const double lambda = 2e6 * 0.3 / (1.3 * 0.4), shear = 2e6 / 2.6, degree = M_PI / 180;
-    const std::map<std::string, std::pair<double, double>> strength = {
-        {"rolled_fill", {31, 14.4e3}},       {"ground_shale", {27, 24e3}}, {"clay_core", {0, 30e3}}, {"upper_hydraulic_fill", {35, 1}},
-        {"lower_hydraulic_fill", {35, 1}}, {"drain", {37, 1}},           {"berm", {37, 4.8e3}},     {"liquefied", {0, 2e3}}};
+    const std::map<std::string, std::pair<double, double>> strength = {{"rolled_fill", {31, 14.4e3}},
+                                                                       {"ground_shale", {27, 24e3}},
+                                                                       {"clay_core", {0, 30e3}},
+                                                                       {"upper_hydraulic_fill", {35, 1}},
+                                                                       {"lower_hydraulic_fill", {35, 1}},
+                                                                       {"drain", {37, 1}},
+                                                                       {"berm", {37, 4.8e3}},
+                                                                       {"liquefied", {0, 2e3}}};
     for (const auto& name : ps.material_names) {
       const auto [phi, c] = strength.at(name);
       materials.push_back({lambda, shear, std::sin(phi * degree), std::cos(phi * degree), c, 0});
@@ -146,13 +155,16 @@ double compare(double cell, int turns, double seconds, double in_cache_rate) {
   };
   take_turns(all, particles, turns, seconds);
   fmt::print("{} particles (cells of {} m)\n", particles, cell);
-  fmt::print("  {:<22}{:>8}{:>20}{:>16}{:>20}\n", "kernel", "threads", "10^6 p-steps/s", "times plain", "times one thread");
+  fmt::print("  {:<22}{:>8}{:>20}{:>16}{:>20}\n", "kernel", "threads", "10^6 p-steps/s", "times plain",
+             "times one thread");
   for (std::size_t i = 0; i < all.size(); ++i)
-    fmt::print("  {:<22}{:>8}{:>20.1f}{:>16.2f}{:>20}\n", all[i].name, all[i].threads, median(all[i].rates), ratio(all[i], all[0]),
-               all[i].threads == 2 ? fmt::format("{:.2f}", ratio(all[i], all[i - 1])) : "");
+    fmt::print("  {:<22}{:>8}{:>20.1f}{:>16.2f}{:>20}\n", all[i].name, all[i].threads, median(all[i].rates),
+               ratio(all[i], all[0]), all[i].threads == 2 ? fmt::format("{:.2f}", ratio(all[i], all[i - 1])) : "");
   print_stages("linear FLIP USF", *linear);
   print_stages("quadratic APIC USL", *quadratic);
-  if (in_cache_rate > 0) fmt::print("  linear, one thread: {:.0f} % of the rate of the smallest size\n", 100 * median(all[1].rates) / in_cache_rate);
+  if (in_cache_rate > 0)
+    fmt::print("  linear, one thread: {:.0f} % of the rate of the smallest size\n",
+               100 * median(all[1].rates) / in_cache_rate);
   return median(all[1].rates);
 }
 
@@ -163,8 +175,10 @@ int main(int argc, char** argv) {
   bool smoke = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    if (word == "--smoke") smoke = true;
-    else if (word != "--sizes") cells.push_back(std::stod(word));
+    if (word == "--smoke")
+      smoke = true;
+    else if (word != "--sizes")
+      cells.push_back(std::stod(word));
   }
   if (cells.empty()) cells = smoke ? std::vector<double>{1} : std::vector<double>{1, 0.25, 0.125};
   double in_cache = 0;

@@ -1,7 +1,8 @@
 /// The yardstick of tests/performance: an explicit MPM step as a textbook would write it.
 ///
-/// Structure of arrays, scalar loops over particles, one thread; 2-D plane strain, linear shape functions, USF, FLIP, Jaumann
-/// rate, Mohr-Coulomb with the closed-form return of de Souza Neto et al. (2008). A dense grid, no blocks, no chunks, no sorting.
+/// Structure of arrays, scalar loops over particles, one thread; 2-D plane strain, linear shape functions, USF, FLIP,
+/// Jaumann rate, Mohr-Coulomb with the closed-form return of de Souza Neto et al. (2008). A dense grid, no blocks, no
+/// chunks, no sorting.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +29,8 @@ struct Grid {
   double friction;
 };
 
-/// Returns the principal stresses s[0] >= s[1] >= s[2] to the Mohr-Coulomb surface; the equivalent plastic deviatoric strain.
+/// Returns the principal stresses s[0] >= s[1] >= s[2] to the Mohr-Coulomb surface; the equivalent plastic deviatoric
+/// strain.
 inline double return_map(const Material& k, std::array<double, 3>& s) {
   const auto f = [&](double a, double b) { return (a - b) + (a + b) * k.sin_phi - 2 * k.cohesion * k.cos_phi; };
   if (f(s[0], s[2]) <= 0) return 0;
@@ -40,19 +42,23 @@ inline double return_map(const Material& k, std::array<double, 3>& s) {
   s = {trial[0] - dg * (up + vol), trial[1] - dg * vol, trial[2] + dg * (down - vol)};
   if (s[0] < s[1] || s[1] < s[2]) {
     const bool right = (1 - k.sin_psi) * trial[0] - 2 * trial[1] + (1 + k.sin_psi) * trial[2] > 0;
-    const double b = c4 + 2 * G * (right ? 1 + k.sin_phi + k.sin_psi + k.sin_phi * k.sin_psi
-                                         : 1 - k.sin_phi - k.sin_psi + k.sin_phi * k.sin_psi);
+    const double b = c4 + 2 * G *
+                              (right ? 1 + k.sin_phi + k.sin_psi + k.sin_phi * k.sin_psi
+                                     : 1 - k.sin_phi - k.sin_psi + k.sin_phi * k.sin_psi);
     const double fa = f(trial[0], trial[2]), fb = right ? f(trial[0], trial[1]) : f(trial[1], trial[2]);
     const double ga = (a * fa - b * fb) / (a * a - b * b), gb = (a * fb - b * fa) / (a * a - b * b);
     if (right)
-      s = {trial[0] - (ga + gb) * (up + vol), trial[1] - ga * vol + gb * (down - vol), trial[2] + ga * (down - vol) - gb * vol};
+      s = {trial[0] - (ga + gb) * (up + vol), trial[1] - ga * vol + gb * (down - vol),
+           trial[2] + ga * (down - vol) - gb * vol};
     else
-      s = {trial[0] - ga * (up + vol) - gb * vol, trial[1] - ga * vol - gb * (up + vol), trial[2] + (ga + gb) * (down - vol)};
+      s = {trial[0] - ga * (up + vol) - gb * vol, trial[1] - ga * vol - gb * (up + vol),
+           trial[2] + (ga + gb) * (down - vol)};
     if (s[0] < s[2] && k.sin_phi > 0) s.fill(k.cohesion * k.cos_phi / k.sin_phi);
   }
   const std::array<double, 3> d = {trial[0] - s[0], trial[1] - s[1], trial[2] - s[2]};
   const double mean = (d[0] + d[1] + d[2]) / 3;
-  return std::sqrt(2.0 / 3 * ((d[0] - mean) * (d[0] - mean) + (d[1] - mean) * (d[1] - mean) + (d[2] - mean) * (d[2] - mean))) /
+  return std::sqrt(2.0 / 3 *
+                   ((d[0] - mean) * (d[0] - mean) + (d[1] - mean) * (d[1] - mean) + (d[2] - mean) * (d[2] - mean))) /
          (2 * G);
 }
 
@@ -61,10 +67,12 @@ inline void update_stress(const Material& k, Body& b, std::size_t p, double exx,
   const double xx = old_xx - 2 * w * old_xy + vol + 2 * k.shear * exx;
   const double yy = old_yy + 2 * w * old_xy + vol + 2 * k.shear * eyy;
   const double xy = old_xy + w * (old_xx - old_yy) + 2 * k.shear * exy, zz = b.szz[p] + vol;
-  const double centre = 0.5 * (xx + yy), difference = 0.5 * (xx - yy), radius = std::sqrt(difference * difference + xy * xy);
+  const double centre = 0.5 * (xx + yy), difference = 0.5 * (xx - yy),
+               radius = std::sqrt(difference * difference + xy * xy);
   std::array<double, 3> s = {centre + radius, centre - radius, zz};
   std::array<int, 3> place = {0, 1, 2};
-  std::sort(place.begin(), place.end(), [&](int i, int j) { return s[static_cast<std::size_t>(i)] > s[static_cast<std::size_t>(j)]; });
+  std::sort(place.begin(), place.end(),
+            [&](int i, int j) { return s[static_cast<std::size_t>(i)] > s[static_cast<std::size_t>(j)]; });
   std::array<double, 3> sorted;
   for (std::size_t i = 0; i < 3; ++i) sorted[i] = s[static_cast<std::size_t>(place[i])];
   b.ep[p] += return_map(k, sorted);

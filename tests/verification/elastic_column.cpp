@@ -14,8 +14,9 @@ SceneText column(int dimension, const Scheme& scheme, double h, const std::strin
   return {.grid = flat ? fmt::format("{{min: [0 m, 0 m], max: [{} m, 12 m], cell: {} m}}", w, h)
                        : fmt::format("{{min: [0 m, 0 m, 0 m], max: [{0} m, {0} m, 12 m], cell: {1} m}}", w, h),
           .material = "{model: linear_elastic, density: 2000 kg/m3, youngs_modulus: 20 MPa, poisson_ratio: 0.3}",
-          .bodies = flat ? fmt::format("  - {{material: soil, box: {{min: [0 m, 0 m], max: [{} m, 10 m]}}}}", w)
-                         : fmt::format("  - {{material: soil, box: {{min: [0 m, 0 m, 0 m], max: [{0} m, {0} m, 10 m]}}}}", w),
+          .bodies =
+              flat ? fmt::format("  - {{material: soil, box: {{min: [0 m, 0 m], max: [{} m, 10 m]}}}}", w)
+                   : fmt::format("  - {{material: soil, box: {{min: [0 m, 0 m, 0 m], max: [{0} m, {0} m, 10 m]}}}}", w),
           .gravity = flat ? "[0, -10 m/s2]" : "[0, 0, -10 m/s2]",
           .boundaries = flat ? "{left: roller, right: roller, bottom: roller}"
                              : "{left: roller, right: roller, front: roller, back: roller, bottom: roller}",
@@ -46,7 +47,8 @@ double equilibrium_error(int dimension, const std::string& shape, double h) {
 }
 
 // Displacements are quadratic in y. Linear functions give each cell one stress, exact in its middle: an error of first
-// order. Its vertical part is h / (4 H) for points h / 4 off the middle, and the horizontal two add 2 nu / (1 - nu) of it.
+// order. Its vertical part is h / (4 H) for points h / 4 off the middle, and the horizontal two add 2 nu / (1 - nu) of
+// it.
 TEST(ElasticColumn, EquilibriumWithLinearFunctionsIsOfFirstOrder) {
   for (const int dimension : {2, 3})
     for (const double h : {1.0, 0.5})
@@ -54,8 +56,8 @@ TEST(ElasticColumn, EquilibriumWithLinearFunctionsIsOfFirstOrder) {
           << dimension << "-D, cells of " << h;
 }
 
-// Quadratic functions hold the exact displacements; what is left is the quadrature by 2 points an axis, an error of second
-// order: 4 times less with half the cell, to a tenth.
+// Quadratic functions hold the exact displacements; what is left is the quadrature by 2 points an axis, an error of
+// second order: 4 times less with half the cell, to a tenth.
 TEST(ElasticColumn, EquilibriumWithBSplinesIsOfSecondOrder) {
   for (const int dimension : {2, 3}) {
     const double coarse = equilibrium_error(dimension, "quadratic_bspline", 1);

@@ -1,5 +1,6 @@
-/// F11: a free elastic disc in rotation. Sources: conservation of angular momentum (Jiang et al. 2015 for APIC on B-splines,
-/// where the affine field carries m h^2 / 4 per unit of C); the elastic solution of a rotating disc in plane strain.
+/// F11: a free elastic disc in rotation. Sources: conservation of angular momentum (Jiang et al. 2015 for APIC on
+/// B-splines, where the affine field carries m h^2 / 4 per unit of C); the elastic solution of a rotating disc in plane
+/// strain.
 #include <numbers>
 
 #include "core/grid/blocks.h"
@@ -18,15 +19,17 @@ constexpr double B = (1 + 2 * poisson) / (8 * (1 - poisson)) * density * spin * 
 std::string circle() {
   std::string points;
   for (int i = 0; i < 72; ++i)
-    points += fmt::format("{}[{} m, {} m]", i ? ", " : "", radius * std::cos(pi * i / 36), radius * std::sin(pi * i / 36));
+    points +=
+        fmt::format("{}[{} m, {} m]", i ? ", " : "", radius * std::cos(pi * i / 36), radius * std::sin(pi * i / 36));
   return "[" + points + "]";
 }
 
 std::unique_ptr<Simulation> disc(const Scheme& scheme) {
-  auto simulation = simulate({.grid = "{min: [-1 m, -1 m], max: [1 m, 1 m], cell: 0.1 m}",
-                              .material = "{model: linear_elastic, density: 1000 kg/m3, youngs_modulus: 0.2 MPa, poisson_ratio: 0.3}",
-                              .bodies = fmt::format("  - {{material: soil, polygon: {}}}", circle()),
-                              .scheme = scheme});
+  auto simulation =
+      simulate({.grid = "{min: [-1 m, -1 m], max: [1 m, 1 m], cell: 0.1 m}",
+                .material = "{model: linear_elastic, density: 1000 kg/m3, youngs_modulus: 0.2 MPa, poisson_ratio: 0.3}",
+                .bodies = fmt::format("  - {{material: soil, polygon: {}}}", circle()),
+                .scheme = scheme});
   Particles& particles = simulation->particles();
   set_column(particles, "velocity", 0, [](const auto& x) { return -spin * x[1]; });
   set_column(particles, "velocity", 1, [](const auto& x) { return spin * x[0]; });
@@ -67,33 +70,151 @@ double deviatoric_error(const Particles& particles) {
   double largest = 0;
   for (std::size_t p = 0; p < xx.size(); ++p) {
     const double r = std::hypot(x[p], y[p]), c = x[p] / r, s = y[p] / r, half = (A - B) * r * r / -2;
-    largest = std::max({largest, std::abs((xx[p] - yy[p]) / 2 - half * (c * c - s * s)), std::abs(xy[p] - half * 2 * c * s)});
+    largest =
+        std::max({largest, std::abs((xx[p] - yy[p]) / 2 - half * (c * c - s * s)), std::abs(xy[p] - half * 2 * c * s)});
   }
   return largest / (density * spin * spin * radius * radius);
 }
 
+/// Linear functions give APIC no constant h^2 / 4, and their small nodal masses do not hold a free rim (F7): B-splines
+/// only.
+std::vector<Scheme> apic() {
+  auto schemes = transfers_and_timings();
+  std::erase_if(schemes, [](const Scheme& s) { return !s.affine(); });
+  return schemes;
+}
+
 class RotatingDisc : public ::testing::TestWithParam<Scheme> {};
 
-TEST_P(RotatingDisc, M) {
+// Gates: 1e-6 of the angular momentum (measured: 1e-12, round-off), and a tenth of rho Omega^2 R^2 for the deviatoric
+// stress over three turns (measured: 0.08; the rim is ragged at this cell size, and no stress is seen to grow from turn
+// to turn). Strain is taken at the beginning of the step (USL) or at its end (USF), not in its middle: a turning disc
+// grows or shrinks by Omega^2 dt / 2 of its radius a second without being strained, and its energy changes twice as
+// fast at given momentum.
+TEST_P(RotatingDisc, KeepsItsMomentumAndItsStress) {
   const auto simulation = disc(GetParam());
-  const double l0 = angular_momentum(simulation->particles(), false), la0 = angular_momentum(simulation->particles(), GetParam().affine());
-  double e0 = energy(*simulation, "kinetic");
-  try{
-  for (int rev : {1, 2, 3}) {
-    simulation->advance_to(rev * 2 * pi);
-    fmt::print("{:30} rev {} L {:.6f} La-1 {:.2e} dev {:.3e} E {:.4f} el {:.4e} steps {}\n", GetParam().name(), rev, angular_momentum(simulation->particles(), false) / l0,
-               angular_momentum(simulation->particles(), GetParam().affine()) / la0 - 1, deviatoric_error(simulation->particles()), energy(*simulation, "kinetic") / e0, energy(*simulation, "elastic")/e0, simulation->steps());
-  }}catch(std::exception&e){puts(e.what());}
+  const double momentum = angular_momentum(simulation->particles(), true), kinetic = energy(*simulation, "kinetic");
+  for (const int turns : {1, 2, 3}) {
+    simulation->advance_to(turns * 2 * pi / spin);
+    const double dt = simulation->time() / static_cast<double>(simulation->steps());
+    EXPECT_NEAR(angular_momentum(simulation->particles(), true) / momentum, 1, 1e-6);
+    EXPECT_LT(deviatoric_error(simulation->particles()), 0.1);
+    EXPECT_NEAR(energy(*simulation, "kinetic") / kinetic, 1, 1.1 * spin * spin * dt * simulation->time() + 1e-3);
+  }
 }
-INSTANTIATE_TEST_SUITE_P(Schemes, RotatingDisc, ::testing::ValuesIn(all_schemes()), scheme_name);
-TEST(RotatingDiscPic, M) {
-  for (const char* sh : {"linear","quadratic_bspline"}) {
-  const auto simulation = disc({sh, "flip", "usl", 0, {}});
-  const double l0 = angular_momentum(simulation->particles(), false);
-  for (double rev : {.1,.5,1.,2.}) {
-    simulation->advance_to(rev * 2 * pi);
-    fmt::print("PIC {:30} rev {} L {:.6f}  dev {:.3e}\n", sh, rev, angular_momentum(simulation->particles(), false) / l0, deviatoric_error(simulation->particles()));
-  }}
+
+INSTANTIATE_TEST_SUITE_P(Schemes, RotatingDisc, ::testing::ValuesIn(apic()), transfer_and_timing);
+
+// The negative control: PIC hands no rotation on within a cell, and loses most of it in one turn.
+TEST(RotatingDiscWithPic, LosesItsMomentum) {
+  const auto simulation = disc({"quadratic_bspline", "flip", "musl", 0, {}});
+  const double momentum = angular_momentum(simulation->particles(), false);
+  simulation->advance_to(2 * pi / spin);
+  EXPECT_LT(angular_momentum(simulation->particles(), false), 0.3 * momentum);
+}
+
+/// Turns the stress of points by pure rotation increments, one at a time, through Materials::update_stress.
+template <int Dim>
+class Turntable {
+ public:
+  using Tensor = std::array<double, symmetric_components<Dim>>;
+  using Spin = std::array<double, spin_components<Dim>>;
+
+  explicit Turntable(const Tensor& stress) : materials_(definition()), particles_(Dim), block_{}, zero_(8, 0.0) {
+    materials_.declare(particles_.columns);
+    particles_.resize(1);
+    particles_.material_names = {"soil"};
+    particles_.columns.data(particles_.mass)[0] = 1;
+    particles_.columns.data(particles_.volume)[0] = 1e-3;
+    for (std::size_t c = 0; c < stress.size(); ++c)
+      particles_.columns.data(particles_.stress, static_cast<int>(c))[0] = stress[c];
+    GridGeometry<Dim> grid;
+    grid.max.fill(8);
+    grid.cell.fill(1);
+    grid.cells.fill(8);
+    blocks_.sort(particles_, grid, 1);
+    block_ = blocks_.particle_blocks()[0];
+  }
+
+  void turn(Spin spin_increment) {
+    StrainIncrements<Dim> increments;
+    for (auto& strain : increments.strain) strain = zero_.data();
+    for (std::size_t c = 0; c < spin_increment.size(); ++c) increments.rotation[c] = &spin_increment[c];
+    materials_.update_stress(particles_, blocks_, block_, increments);
+  }
+
+  Tensor stress() const {
+    Tensor s;
+    for (std::size_t c = 0; c < s.size(); ++c)
+      s[c] = particles_.columns.data(particles_.stress, static_cast<int>(c))[0];
+    return s;
+  }
+
+ private:
+  static Case definition() {
+    Case c;
+    c.materials.emplace_back(
+        "soil", read_yaml_text("{model: linear_elastic, density: 1000 kg/m3, youngs_modulus: 1 MPa}", "soil"));
+    return c;
+  }
+
+  Materials<Dim> materials_;
+  Particles particles_;
+  Blocks<Dim> blocks_;
+  ParticleBlock<Dim> block_;
+  std::vector<double> zero_;
+};
+
+template <std::size_t N>
+void expect_stress(const std::array<double, N>& found, const std::array<double, N>& expected, double tolerance) {
+  for (std::size_t c = 0; c < N; ++c) EXPECT_NEAR(found[c], expected[c], tolerance) << "component " << c;
+}
+
+// A uniaxial stress must come back after a full turn. Each step turns by 2 atan(w / 2) (Hughes & Winget 1980), so the
+// angle of 2000 steps is short of the turn by w^2 / 12 of it, 5e-6 rad: twice that, of the stress, shows in the shear.
+TEST(JaumannRotation, UniaxialStressReturnsAfterAFullTurn) {
+  constexpr int steps = 2000;
+  const double w = 2 * pi / steps, miss = 2 * pi * w * w / 12;
+  Turntable<2> plane({1, 0, 0, 0});
+  for (int i = 0; i < steps; ++i) plane.turn({w});
+  expect_stress<4>(plane.stress(), {1, 0, 0, -miss}, 1e-6);
+
+  Turntable<3> space({1, 0, 0.5, 0, 0, 0});
+  for (int i = 0; i < steps; ++i) space.turn({-w, 0, 0});  // w_xy = -w_yx
+  expect_stress<6>(space.stress(), {1, 0, 0.5, -miss, 0, 0}, 1e-6);
+}
+
+// With increments whose tangent is exact, tan(w / 2) = w' / 2, a quarter turn brings xx to yy without any error, about
+// each axis.
+TEST(JaumannRotation, QuarterTurnsAreExact) {
+  constexpr int steps = 50;
+  const double w = 2 * std::tan(pi / 4 / steps);
+  Turntable<2> plane({3, 1, 2, 0.5});
+  for (int i = 0; i < steps; ++i) plane.turn({w});
+  expect_stress<4>(plane.stress(), {1, 3, 2, -0.5}, 1e-13);
+  Turntable<3> about_z({1, 2, 3, 0, 0, 0}), about_x({1, 2, 3, 0, 0, 0}), about_y({1, 2, 3, 0, 0, 0});
+  for (int i = 0; i < steps; ++i) {
+    about_z.turn({w, 0, 0});
+    about_x.turn({0, w, 0});
+    about_y.turn({0, 0, w});
+  }
+  expect_stress<6>(about_z.stress(), {2, 1, 3, 0, 0, 0}, 1e-13);
+  expect_stress<6>(about_x.stress(), {1, 3, 2, 0, 0, 0}, 1e-13);
+  expect_stress<6>(about_y.stress(), {3, 2, 1, 0, 0, 0}, 1e-13);
+}
+
+// A rotation about a slanted axis keeps the invariants of any stress, and a hydrostatic stress altogether: round-off.
+TEST(JaumannRotation, InvariantsAndHydrostaticStressStay) {
+  Turntable<3> any({3, -1, 2, 0.5, -0.7, 1.1}), pressure({-5, -5, -5, 0, 0, 0});
+  for (int i = 0; i < 1000; ++i) {
+    any.turn({0.02, -0.03, 0.05});
+    pressure.turn({0.02, -0.03, 0.05});
+  }
+  const auto s = any.stress();
+  const double squares = s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + 2 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
+  EXPECT_NEAR(s[0] + s[1] + s[2], 4, 1e-12);
+  EXPECT_NEAR(squares, 14 + 2 * (0.25 + 0.49 + 1.21), 1e-11);
+  expect_stress<6>(pressure.stress(), {-5, -5, -5, 0, 0, 0}, 1e-12);
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
-/// F1: uniform motion of uniformly stressed material across cells (Bardenhagen & Kober 2004; Steffen et al. 2008): velocity
-/// and stress must stay as they are. Linear shape functions fail: a node between cells that hold different numbers of
-/// particles feels a force of one particle, sigma V_p / h, although nothing is out of balance.
+/// F1: uniform motion of uniformly stressed material across cells (Bardenhagen & Kober 2004; Steffen et al. 2008):
+/// velocity and stress must stay as they are. Linear shape functions fail: a node between cells that hold different
+/// numbers of particles feels a force of one particle, sigma V_p / h, although nothing is out of balance.
 ///
-/// A long bar with free ends moves along a channel. Ends and interior are so far apart that, in the steps taken, nothing
-/// at the ends can have reached the particles that are looked at: a step carries an influence over at most 3 cells.
+/// A long bar with free ends moves along a channel. Ends and interior are so far apart that, in the steps taken,
+/// nothing at the ends can have reached the particles that are looked at: a step carries an influence over at most 3
+/// cells.
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {
@@ -13,21 +14,25 @@ constexpr double stress = -100, velocity = 1, dt = 0.05, density = 1000;
 constexpr double kick = dt * -stress / (2 * density);  // of linear functions, at h = 1 m
 constexpr int steps = 40, reach = 3 * steps;
 
-/// Particles stand half a cell apart. In a deforming body no lattice fits the cells exactly; a bar stretched by 1 + e about
-/// its middle stands for that: the points of one half cross their cell edges in step 15, those of the other in step 16.
+/// Particles stand half a cell apart. In a deforming body no lattice fits the cells exactly; a bar stretched by 1 + e
+/// about its middle stands for that: the points of one half cross their cell edges in step 15, those of the other in
+/// step 16.
 constexpr double length = 345, middle = length / 2;
 
 SceneText channel(int dimension, const Scheme& scheme) {
   const bool flat = dimension == 2;
-  return {.grid = flat ? "{min: [-2 m, 0 m], max: [350 m, 2 m], cell: 1 m}"
-                       : "{min: [-2 m, 0 m, 0 m], max: [350 m, 1 m, 1 m], cell: 1 m}",
-          .material = "{model: linear_elastic, density: 1000 kg/m3, youngs_modulus: 1 kPa, poisson_ratio: 0}",
-          .bodies = flat ? "  - {material: soil, box: {min: [0 m, 0 m], max: [345 m, 2 m]}, velocity: [1 m/s, 0]}"
-                         : "  - {material: soil, box: {min: [0 m, 0 m, 0 m], max: [345 m, 1 m, 1 m]}, velocity: [1 m/s, 0, 0]}",
-          .boundaries = flat ? "{bottom: roller, top: roller}" : "{bottom: roller, top: roller, front: roller, back: roller}",
-          .initial_stress = flat ? "{method: uniform, stress: [-100 Pa, -100 Pa, -100 Pa, 0]}"
-                                 : "{method: uniform, stress: [-100 Pa, -100 Pa, -100 Pa, 0, 0, 0]}",
-          .scheme = scheme.with("time_step: 50 ms")};
+  return {
+      .grid = flat ? "{min: [-2 m, 0 m], max: [350 m, 2 m], cell: 1 m}"
+                   : "{min: [-2 m, 0 m, 0 m], max: [350 m, 1 m, 1 m], cell: 1 m}",
+      .material = "{model: linear_elastic, density: 1000 kg/m3, youngs_modulus: 1 kPa, poisson_ratio: 0}",
+      .bodies =
+          flat ? "  - {material: soil, box: {min: [0 m, 0 m], max: [345 m, 2 m]}, velocity: [1 m/s, 0]}"
+               : "  - {material: soil, box: {min: [0 m, 0 m, 0 m], max: [345 m, 1 m, 1 m]}, velocity: [1 m/s, 0, 0]}",
+      .boundaries =
+          flat ? "{bottom: roller, top: roller}" : "{bottom: roller, top: roller, front: roller, back: roller}",
+      .initial_stress = flat ? "{method: uniform, stress: [-100 Pa, -100 Pa, -100 Pa, 0]}"
+                             : "{method: uniform, stress: [-100 Pa, -100 Pa, -100 Pa, 0, 0, 0]}",
+      .scheme = scheme.with("time_step: 50 ms")};
 }
 
 struct Deviation {

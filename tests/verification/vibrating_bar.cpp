@@ -1,6 +1,7 @@
 /// Axial vibration of an elastic bar, fixed at one end and free at the other. Source: the standard
 /// MPM benchmark (for example Steffen et al. 2008): L = 25 m, E = 100 Pa, rho = 1 kg/m3, v(x, 0) = v0 sin(beta x) with
-/// beta = (2 n - 1) pi / (2 L), v0 = 0.1 m/s; then u = (v0 / omega) sin(omega t) sin(beta x), omega = beta sqrt(E / rho).
+/// beta = (2 n - 1) pi / (2 L), v0 = 0.1 m/s; then u = (v0 / omega) sin(omega t) sin(beta x), omega = beta sqrt(E /
+/// rho).
 #include <numbers>
 
 #include "tests/verification/scene_fixture.h"
@@ -19,15 +20,17 @@ struct Vibration {
 /// Ten periods of mode n on cells of size h.
 Vibration vibrate(const Scheme& scheme, int n, double h) {
   const double beta = (2 * n - 1) * pi / (2 * length), period = 2 * pi / (beta * wave_speed);
-  const auto simulation = simulate({.grid = fmt::format("{{min: [0 m, 0 m], max: [27 m, {0} m], cell: {0} m}}", h),
-                                    .material = "{model: linear_elastic, density: 1 kg/m3, youngs_modulus: 100 Pa, poisson_ratio: 0}",
-                                    .bodies = fmt::format("  - {{material: soil, box: {{min: [0 m, 0 m], max: [25 m, {} m]}}}}", h),
-                                    .boundaries = "{left: roller, bottom: roller, top: roller}",
-                                    .scheme = scheme});
+  const auto simulation =
+      simulate({.grid = fmt::format("{{min: [0 m, 0 m], max: [27 m, {0} m], cell: {0} m}}", h),
+                .material = "{model: linear_elastic, density: 1 kg/m3, youngs_modulus: 100 Pa, poisson_ratio: 0}",
+                .bodies = fmt::format("  - {{material: soil, box: {{min: [0 m, 0 m], max: [25 m, {} m]}}}}", h),
+                .boundaries = "{left: roller, bottom: roller, top: roller}",
+                .scheme = scheme});
   Particles& particles = simulation->particles();
   const auto shape = [&](const auto& x) { return std::sin(beta * x[0]); };
   set_column(particles, "velocity", 0, [&](const auto& x) { return v0 * shape(x); });
-  if (scheme.affine()) set_column(particles, "affine_velocity", 0, [&](const auto& x) { return v0 * beta * std::cos(beta * x[0]); });
+  if (scheme.affine())
+    set_column(particles, "affine_velocity", 0, [&](const auto& x) { return v0 * beta * std::cos(beta * x[0]); });
   auto mode = by_id(particles, "velocity");
   const auto mass = by_id(particles, "mass");
   for (double& m : mode) m /= v0;
@@ -59,7 +62,8 @@ Vibration vibrate(const Scheme& scheme, int n, double h) {
 }
 
 /// Lumped masses slow waves of wave number k down by a share of (k h)^2, largest for FLIP with quadratic B-splines,
-/// (k h)^2 / 4 (linear: / 8): so many periods are lost in ten. One tenth on top is room for the error of time integration.
+/// (k h)^2 / 4 (linear: / 8): so many periods are lost in ten. One tenth on top is room for the error of time
+/// integration.
 double largest_phase_error(int n, double h) {
   const double kh = (2 * n - 1) * pi / (2 * length) * h;
   return 10 * kh * kh / 4 * 1.1;
@@ -76,8 +80,8 @@ TEST_P(VibratingBar, FirstMode) {
   EXPECT_NEAR(v.energy, 1, 4e-3);
 }
 
-// 42 points a wave. Schemes that are known to damp, FLIP with USL (Bardenhagen 2002) and APIC with wide shape functions,
-// lose up to a fifth of the energy; the others keep it to 2 %.
+// 42 points a wave. Schemes that are known to damp, FLIP with USL (Bardenhagen 2002) and APIC with wide shape
+// functions, lose up to a fifth of the energy; the others keep it to 2 %.
 TEST_P(VibratingBar, TenthMode) {
   const Vibration v = vibrate(GetParam(), 10, 0.25);
   const bool damps = GetParam().affine() ? !GetParam().linear() : GetParam().stress_update == "usl";

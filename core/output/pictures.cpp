@@ -1,0 +1,63 @@
+#include "core/output/pictures.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+namespace sluice {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path script() {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
+  for (const fs::path& candidate :
+       {program / "pictures.py", program / "../pictures.py", program / "../share/sluice/pictures.py"})
+    if (fs::exists(candidate)) return fs::canonical(candidate);
+  throw std::runtime_error(fmt::format("pictures.py was not found beside the program in {}", program.string()));
+}
+
+std::string python() {
+  if (const char* chosen = std::getenv("SLUICE_PYTHON")) return chosen;
+  return fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
+}
+
+std::vector<std::string> command_line(const PictureRequest& request) {
+  std::vector<std::string> words = {python(), script().string(), request.folder.string()};
+  if (!request.fields.empty()) words.emplace_back("--fields");
+  words.insert(words.end(), request.fields.begin(), request.fields.end());
+  if (!request.times.empty()) words.emplace_back("--times");
+  for (const double t : request.times) words.push_back(fmt::format("{}", t));
+  if (request.animation) words.emplace_back("--animation");
+  return words;
+}
+
+}  // namespace
+
+bool draw_pictures(const PictureRequest& request) {
+  std::vector<std::string> words = command_line(request);
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("the program that draws pictures could not be started");
+  if (child == 0) {
+    if (request.quiet) {
+      const int nowhere = open("/dev/null", O_WRONLY);
+      if (nowhere >= 0) dup2(nowhere, STDOUT_FILENO);
+    }
+    execvp(arguments[0], arguments.data());
+    fmt::print(stderr, "pictures: {} could not be started\n", words[0]);
+    _exit(127);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+}  // namespace sluice

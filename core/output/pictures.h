@@ -1,0 +1,22 @@
+/// Pictures: starts the script that draws them, core/output/pictures.py.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace sluice {
+
+struct PictureRequest {
+  std::filesystem::path folder;     ///< holds results.h5
+  std::vector<std::string> fields;  ///< empty: what the script finds useful
+  std::vector<double> times;        ///< [s]; empty: four evenly spaced
+  bool animation = false;
+  bool quiet = false;  ///< do not print the names of the pictures
+};
+
+/// Waits for the script to end; true if it succeeded. The script stands beside the program or in its share folder, and
+/// is run by $SLUICE_PYTHON, else by Debian's python3. Throws std::runtime_error if there is no script.
+bool draw_pictures(const PictureRequest& request);
+
+}  // namespace sluice
