@@ -337,11 +337,15 @@ def read_table(path):
     return {name: [row[i] for row in rows[1:] if len(row) == len(rows[0])] for i, name in enumerate(rows[0])}
 
 
+UNITS = {"m_s": "m/s", "J_m": "J/m", "kg_m": "kg/m", "m": "m", "s": "s", "J": "J", "Pa": "Pa", "kg": "kg"}
+
+
 def with_unit(name):
-    """'front_m' as 'front [m]'. Only known units are taken for one."""
-    words, _, unit = name.rpartition("_")
-    known = {"m": "m", "s": "s", "J": "J", "J/m": "J/m", "m/s": "m/s", "Pa": "Pa", "kg": "kg"}
-    return f"{words.replace('_', ' ')} [{known[unit]}]" if unit in known else name.replace("_", " ")
+    """'front_m' as 'front [m]'. Only known units are taken for one, the longest first."""
+    for word, unit in UNITS.items():
+        if name.endswith("_" + word):
+            return f"{name.removesuffix('_' + word).replace('_', ' ')} [{unit}]"
+    return name.replace("_", " ")
 
 
 def draw_history(table, path):

@@ -50,7 +50,7 @@ void throw_first_bad_particle(const Scene<Dim>& scene) {
     if (!(length<Dim>(vector_at<Dim>(ps.columns, ps.velocity, p)) < 1e150))
       what = "a velocity is not finite";
     else if (!(volume > 0))
-      what = "a particle is inverted (its volume would be negative)";
+      what = "a particle inverts, or more than doubles its volume, in one step";
     else if (!(stress < 1e300))
       what = "a stress is not finite";
     if (what != nullptr)

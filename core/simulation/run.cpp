@@ -80,7 +80,6 @@ class Run {
       resume();
     else
       checkpoints_.clear();
-    first_step_ = simulation_->steps();
     open_outputs();
   }
 
@@ -88,7 +87,7 @@ class Run {
     Progress progress(options_.quiet, simulation_->time(), case_.end_time);
     Schedule frames(case_.output.every, simulation_->time()), rows(case_.output.history_every, simulation_->time());
     if (!options_.resume) {
-      write_row({});
+      write_row({0, "", simulation_->largest_speed()});
       results_->add_frame(simulation_->particles(), simulation_->time(), simulation_->steps());
       checkpoint();
     }
@@ -192,11 +191,7 @@ class Run {
     for (const auto& energy : simulation_->energies()) row.emplace_back(energy.second);
     history_->append(row);
     std::vector<CsvTable::Cell> observed = {simulation_->steps(), time};
-    for (std::size_t i = 0; i < observations_.size(); ++i) {
-      const double value = observations_[i]->evaluate(simulation_->particles());
-      last_observed_[case_.observe[i].name] = value;
-      observed.emplace_back(value);
-    }
+    for (const auto& observation : observations_) observed.emplace_back(observation->evaluate(simulation_->particles()));
     observed_->append(observed);
   }
 
@@ -240,7 +235,8 @@ class Run {
     s.particle_steps_per_second = (earlier_particle_steps_ + static_cast<double>(particle_steps_)) / s.wall_seconds;
     s.stage_seconds = simulation_->stage_seconds();
     s.stage_seconds["output"] = output_seconds_;
-    s.observations = last_observed_;
+    for (std::size_t i = 0; i < observations_.size(); ++i)
+      s.observations[case_.observe[i].name] = observations_[i]->evaluate(simulation_->particles());
     s.extra["removed_particles"] = static_cast<double>(simulation_->removed_particles());
     s.extra["particle_bytes"] = static_cast<double>(simulation_->memory());
     write_summary(options_.folder / "summary.json", s);
@@ -264,7 +260,7 @@ class Run {
                summary_.threads == 1 ? "" : "s", summary_.particle_steps_per_second / 1e6);
     for (const auto& [stage, seconds] : summary_.stage_seconds) fmt::print("  {:<10}{:9.2f} s\n", stage, seconds);
     for (std::size_t i = 0; i < observations_.size(); ++i)
-      fmt::print("  {} = {:.4g} {}\n", case_.observe[i].name, last_observed_.at(case_.observe[i].name),
+      fmt::print("  {} = {:.4g} {}\n", case_.observe[i].name, summary_.observations.at(case_.observe[i].name),
                  observations_[i]->unit());
     fmt::print("results in {}\n", options_.folder.string());
   }
@@ -277,8 +273,6 @@ class Run {
   std::optional<ResultsWriter> results_;
   std::optional<CsvTable> history_, observed_;
   std::vector<std::unique_ptr<Observation>> observations_;
-  std::map<std::string, double> last_observed_;
-  std::int64_t first_step_ = 0;
   std::size_t particle_steps_ = 0;
   double earlier_seconds_ = 0, earlier_particle_steps_ = 0, output_seconds_ = 0;
   Summary summary_;

@@ -42,7 +42,7 @@ struct Scene {
   double kick(double dt) const { return 0.5 * (previous_dt + dt); }
 
   BlockParticles<Dim> view(const ParticleBlock<Dim>& block) const;
-  /// Velocity of APIC's affine field is null when the transfer is not affine.
+  /// The affine columns are null when the transfer is not affine.
   ScatterInput<Dim> scatter_input(const ParticleBlock<Dim>& block) const;
 };
 

@@ -38,7 +38,7 @@ class SimulationOf final : public Simulation {
     scene_.time = arrives ? until : scene_.time + dt.seconds;
     ++scene_.step;
     scene_.previous_dt = dt.seconds;
-    return {dt.seconds, dt.name, std::sqrt(scene_.motion.largest_speed_squared)};
+    return {dt.seconds, dt.name, largest_speed()};
   }
 
   std::vector<std::pair<std::string, double>> time_step_limits() const override {
@@ -47,6 +47,7 @@ class SimulationOf final : public Simulation {
     return limits;
   }
   std::vector<std::pair<std::string, double>> energies() const override { return module_->energies(scene_); }
+  double largest_speed() const override { return std::sqrt(scene_.motion.largest_speed_squared); }
   std::map<std::string, double> stage_seconds() const override { return scene_.clock.seconds(); }
   std::size_t removed_particles() const override { return removed_; }
   std::size_t memory() const override { return scene_.particles.columns.memory(); }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/simulation/multitarget.h"
+
 namespace sluice {
 
 template <int Dim>
@@ -13,28 +15,54 @@ void CellAverages<Dim>::resize(const Blocks<Dim>& blocks) {
   cell_.resize(particles);
 }
 
+/// The cell of each particle of a block in the block's tile, first axis fastest; points outside of the tile count to its rim.
+template <int Dim>
+SLUICE_MULTITARGET void locate_in_tile(const BlockParticles<Dim>& block, int width, std::int32_t* __restrict place) {
+  const std::uint32_t count = block.end - block.begin;
+  for (std::uint32_t p = 0; p < count; ++p) place[p] = 0;
+  for (int a = Dim - 1; a >= 0; --a) {
+    const double* __restrict x = block.position[a] + block.begin;
+    const double low = block.grid->min[a], inverse = 1 / block.grid->cell[a], last_cell = block.grid->cells[a] - 1;
+    const double first = block.first_cell[a] - tile_margin, rim = width - 1;
+    for (std::uint32_t p = 0; p < count; ++p) {
+      double cell = std::floor((x[p] - low) * inverse);
+      cell = cell < last_cell ? cell : last_cell;
+      double local = (cell > 0 ? cell : 0) - first;
+      local = local > 0 ? local : 0;
+      place[p] = place[p] * width + static_cast<std::int32_t>(local < rim ? local : rim);
+    }
+  }
+}
+
 template <int Dim>
 void CellAverages<Dim>::add(std::size_t number, const BlockParticles<Dim>& block, const double* weight,
                             const double* quantity) {
   Sums* tile = tiles_.data() + number * tile_cells;
   std::fill_n(tile, tile_cells, Sums{});
-  for (std::uint32_t p = block.begin; p < block.end; ++p) {
-    Vector<Dim> x;
-    for (int a = 0; a < Dim; ++a) x[a] = block.position[a][p];
-    const Index<Dim> cell = block.grid->cell_of(x);
-    int place = 0;
-    for (int a = Dim - 1; a >= 0; --a)
-      place = place * width + std::clamp(cell[a] - block.first_cell[a] + tile_margin, 0, width - 1);
-    cell_[p] = place;
-    tile[place].weight += weight[p];
-    tile[place].product += weight[p] * quantity[p - block.begin];
+  std::int32_t* const place = cell_.data() + block.begin;
+  locate_in_tile<Dim>(block, width, place);
+  for (std::uint32_t p = 0; p < block.end - block.begin; ++p) {
+    const double w = weight[block.begin + p];
+    tile[place[p]].weight += w;
+    tile[place[p]].product += w * quantity[p];
   }
 }
+
+namespace {
+
+/// Cells [low, high) of a tile along one axis that the tile of a neighbour, `shift` blocks on, reaches too; cell i here is
+/// cell i + offset there.
+struct Reach {
+  int low, high, offset;
+  Reach(int tile, int block, int shift)
+      : low(std::max(0, block * shift)), high(std::min(tile, tile + block * shift)), offset(-block * shift) {}
+};
+
+}  // namespace
 
 template <int Dim>
 void CellAverages<Dim>::mean(const Blocks<Dim>& blocks, std::size_t number, const BlockParticles<Dim>& block,
                              double* mean) const {
-  constexpr int shift_in_cells = block_width<Dim>;
   const auto& own = blocks.particle_blocks()[number];
   const auto& around = blocks.node_blocks()[static_cast<std::size_t>(own.nodes[neighbourhood<Dim> / 2])].particles;
   std::array<Sums, tile_cells> sums{};
@@ -42,19 +70,16 @@ void CellAverages<Dim>::mean(const Blocks<Dim>& blocks, std::size_t number, cons
     const std::int32_t other = around[static_cast<std::size_t>(n)];
     if (other < 0) continue;
     const Sums* tile = tiles_.data() + static_cast<std::size_t>(other) * tile_cells;
-    for (std::size_t c = 0; c < tile_cells; ++c) {
-      // Cell c of this tile in the tile of the neighbour, if it reaches there.
-      int place = 0, stride = 1;
-      bool reached = true;
-      for (int a = 0, rest = static_cast<int>(c), shift = n; a < Dim; ++a, rest /= width, shift /= 3, stride *= width) {
-        const int i = rest % width - shift_in_cells * (shift % 3 - 1);
-        reached = reached && i >= 0 && i < width;
-        place += i * stride;
+    const Reach x(width, block_width<Dim>, n % 3 - 1), y(width, block_width<Dim>, n / 3 % 3 - 1);
+    const Reach z(Dim == 3 ? width : 1, block_width<Dim>, Dim == 3 ? n / 9 - 1 : 0);
+    for (int k = z.low; k < z.high; ++k)
+      for (int j = y.low; j < y.high; ++j) {
+        const int row = (k * width + j) * width, row_there = ((k + z.offset) * width + j + y.offset) * width + x.offset;
+        for (int i = x.low; i < x.high; ++i) {
+          sums[static_cast<std::size_t>(row + i)].weight += tile[row_there + i].weight;
+          sums[static_cast<std::size_t>(row + i)].product += tile[row_there + i].product;
+        }
       }
-      if (!reached) continue;
-      sums[c].weight += tile[place].weight;
-      sums[c].product += tile[place].product;
-    }
   }
   for (std::uint32_t p = block.begin; p < block.end; ++p) {
     const Sums& s = sums[static_cast<std::size_t>(cell_[p])];

@@ -312,7 +312,8 @@ SLUICE_ALWAYS_INLINE double write_strain(const ChunkGathered<Dim>& g, int count,
       r[2][p] = half * (gz[4 * p] - gx[4 * p + 2]);
       const double axial = std::max(std::max(std::abs(xx), std::abs(yy)), std::abs(zz));
       const double shear = std::max(std::max(std::abs(xy), std::abs(yz)), std::abs(xz));
-      largest = std::max(largest, std::max(axial, shear));
+      const double spin = std::max(std::max(std::abs(r[0][p]), std::abs(r[1][p])), std::abs(r[2][p]));
+      largest = std::max(largest, std::max(axial, std::max(shear, spin)));
     }
   }
   return largest;

@@ -72,7 +72,7 @@ struct MotionUpdate {
 struct MotionReport {
   double largest_speed_squared = 0;  ///< [m2/s2]
   double largest_travel = 0;         ///< share of a cell crossed in the step, over axes and particles
-  double largest_strain_rate = 0;    ///< largest absolute component [1/s]; 0 if no strain was asked for
+  double largest_strain_rate = 0;    ///< largest absolute component, spin included [1/s]; 0 if none was asked for
   bool finite = true;                ///< all velocities are finite
   bool inside = true;                ///< all positions are inside the grid
 };
@@ -100,7 +100,7 @@ class ShapeKernels {
   /// `impulse_dt` [s] is used with momentum_and_impulse only.
   virtual void scatter(ScatterWhat what, const ScatterInput<Dim>& input, double impulse_dt, Lane* tile,
                        Lane* force_tile) const = 0;
-  /// Strain increments dt * sym grad v from the motion tile. Returns the largest absolute component.
+  /// Strain increments dt * sym grad v from the motion tile. Returns the largest absolute component, rotation included.
   virtual double gather_strain(const BlockParticles<Dim>& particles, const Lane* motion_tile, double dt,
                                const StrainIncrements<Dim>& out) const = 0;
   virtual MotionReport gather_motion(const BlockParticles<Dim>& particles, const Lane* motion_tile,

@@ -21,7 +21,7 @@ namespace sluice {
 template <int Dim>
 struct MaterialBatch {
   std::size_t size = 0;
-  /// Strain increment of the step; in 2-D the zz entry is zero unless F-bar is on.
+  /// Strain increment of the step; in 2-D the zz entry is zero.
   std::array<const double*, symmetric_components<Dim>> strain_increment;
   /// In: Cauchy stress [Pa] at the beginning of the step, already rotated with the material (Jaumann). Out: updated.
   std::array<double*, symmetric_components<Dim>> stress;

@@ -85,8 +85,8 @@ struct VolumeReport {
   bool sound = true;
 };
 
-/// V_new = V exp(tr de), to second order and reversible. An inverted particle (1 + tr de <= 0) is left with a negative
-/// volume, by which it is found.
+/// V_new = V exp(tr de), to second order and reversible. A particle that would invert (or more than double) in
+/// one step is left with a negative volume, by which it is found.
 SLUICE_MULTITARGET VolumeReport update_volume(std::size_t n, const double* __restrict xx, const double* __restrict yy,
                                               const double* __restrict zz, const double* __restrict mass,
                                               double* __restrict volume) {
@@ -95,7 +95,7 @@ SLUICE_MULTITARGET VolumeReport update_volume(std::size_t n, const double* __res
 #pragma omp simd reduction(max : largest) reduction(+ : inverted)
   for (std::size_t p = 0; p < n; ++p) {
     const double trace = xx[p] + yy[p] + zz[p];
-    const bool good = trace > -1;  // false for NaN, too
+    const bool good = std::abs(trace) < 1;  // false for NaN, too
     const double grown = volume[p] * (1 + 0.5 * trace) / (1 - 0.5 * trace);
     inverted += good ? 0 : 1;
     volume[p] = good ? grown : -std::abs(volume[p]);

@@ -18,6 +18,23 @@ StressTiming timing_of(const Case& definition) {
   return words.at(definition.scheme.stress_update);
 }
 
+/// The in-plane trace of the strain increments of n particles.
+template <int Dim>
+void volumetric_strain(const StrainIncrements<Dim>& strain, std::size_t n, double* __restrict trace) {
+  std::copy_n(strain.strain[0], n, trace);
+  for (std::size_t a = 1; a < Dim; ++a)
+    for (std::size_t p = 0; p < n; ++p) trace[p] += strain.strain[a][p];
+}
+
+/// Changes the in-plane trace of the strain increments to `trace`, in equal parts; destroys `trace`.
+template <int Dim>
+void set_volumetric_strain(double* __restrict trace, std::size_t n, const StrainIncrements<Dim>& strain) {
+  for (std::size_t a = 0; a < Dim; ++a)
+    for (std::size_t p = 0; p < n; ++p) trace[p] -= strain.strain[a][p];
+  for (std::size_t a = 0; a < Dim; ++a)
+    for (std::size_t p = 0; p < n; ++p) strain.strain[a][p] += trace[p] / Dim;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -179,25 +196,16 @@ void TotalStress<Dim>::apply_f_bar(Scene<Dim>& scene, bool then_scatter_force) {
   const auto timing = scene.clock.time(Stage::stress);
   cells_.resize(scene.blocks);
   const double* volume = scene.particles.columns.data(scene.particles.volume);
-  const auto trace = [&](const StrainIncrements<Dim>& strain, std::size_t p) {
-    double sum = 0;
-    for (int a = 0; a < Dim; ++a) sum += strain.strain[a][p];
-    return sum;
-  };
   for_each_block(scene, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
-    const StrainIncrements<Dim> strain = kept_strain(scene, block.begin);
-    double* own = work.numbers.data();
-    for (std::size_t p = 0; p < block.end - block.begin; ++p) own[p] = trace(strain, p);
-    cells_.add(b, scene.view(block), volume, own);
+    double* const dilation = work.numbers.data();
+    volumetric_strain(kept_strain(scene, block.begin), block.end - block.begin, dilation);
+    cells_.add(b, scene.view(block), volume, dilation);
   });
   for_each_block(scene, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     const StrainIncrements<Dim> strain = kept_strain(scene, block.begin);
-    double* mean = work.numbers.data();
+    double* const mean = work.numbers.data();
     cells_.mean(scene.blocks, b, scene.view(block), mean);
-    for (std::size_t p = 0; p < block.end - block.begin; ++p) {
-      const double correction = (mean[p] - trace(strain, p)) / Dim;
-      for (int a = 0; a < Dim; ++a) strain.strain[a][p] += correction;
-    }
+    set_volumetric_strain(mean, block.end - block.begin, strain);
     stress_[b] = materials_.update_stress(scene.particles, scene.blocks, block, strain);
     if (then_scatter_force)
       scene.shape->scatter(ScatterWhat::force, scene.scatter_input(block), 0, nullptr, scene.nodes.force_tile(b));

@@ -79,6 +79,24 @@ TEST(ElasticColumn, EquilibriumWithOnePointACell) {
     }
 }
 
+// The toe of a slope is a sliver of a few points, and a motion that strains none of them costs nothing; the body as a whole is held.
+TEST(ElasticColumn, EquilibriumOfASlopeWithAThinToe) {
+  for (const char* shape : {"linear", "quadratic_bspline"}) {
+    Scheme scheme;
+    scheme.shape = shape;
+    const SceneText slope{.grid = "{min: [-10 m, 0 m], max: [14 m, 8 m], cell: 0.5 m}",
+                          .bodies = "  - {material: soil, polygon: [[-6 m, 0 m], [0 m, 5 m], [2 m, 5 m], [8 m, 0 m]]}",
+                          .gravity = "[0, -10 m/s2]",
+                          .boundaries = "{bottom: fixed}",
+                          .initial_stress = "{method: elastic_equilibrium}",
+                          .scheme = scheme};
+    std::unique_ptr<Simulation> simulation;
+    ASSERT_NO_THROW(simulation = simulate(slope)) << shape;
+    // The largest vertical stress is about that of the height of 5 m.
+    EXPECT_NEAR(largest_magnitude(by_id(simulation->particles(), "stress", 1)) / 50e3, 1, 0.2) << shape;
+  }
+}
+
 class ColumnAtRest : public ::testing::TestWithParam<Scheme> {};
 
 /// The largest kinetic energy in 0.6 s, more than a period of the column.

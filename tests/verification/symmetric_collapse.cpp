@@ -49,29 +49,35 @@ double asymmetry(const Particles& particles, int axis) {
   return largest;
 }
 
-class SymmetricCollapse : public ::testing::TestWithParam<Scheme> {};
+/// APIC and USL on linear functions do not survive the small masses of the spreading rim (F7).
+std::vector<Scheme> survivors() {
+  auto schemes = all_schemes();
+  std::erase_if(schemes, [](const Scheme& s) { return s.linear() && (s.affine() || s.stress_update == "usl"); });
+  return schemes;
+}
 
-TEST_P(SymmetricCollapse, M) {
-  for (int d : {2, 3}) {
-    const auto simulation = column(d, GetParam());
-    set_thread_count(2);
-    try {
-      for (double t : {0.1, 0.2, 0.4, 0.8}) {
-        simulation->advance_to(t);
-        double moved = 0;
-        auto x = by_id(simulation->particles(), "position"), x0 = by_id(simulation->particles(), "initial_position");
-        for (size_t p = 0; p < x.size(); ++p) moved = std::max(moved, std::abs(x[p] - x0[p]));
-        fmt::print("{} {} t {} steps {} asym {:.2e} moved {:.3f}\n", GetParam().name(), d, t, simulation->steps(),
-                   asymmetry(simulation->particles(), 0), moved);
-      }
-    } catch (std::exception& e) {
-      puts(e.what());
-    }
-    set_thread_count(1);
+class SymmetricCollapse : public ::testing::TestWithParam<Scheme> {
+ protected:
+  void TearDown() override { set_thread_count(1); }
+};
+
+// After 0.8 s and 100 steps the column has spread by half of its width. Tolerance: 1e-12 cells, a hundred times the round-off
+// that is found (1e-14); the flow is not chaotic over so short a time.
+TEST_P(SymmetricCollapse, StaysSymmetric) {
+  set_thread_count(2);
+  for (const int dimension : {2, 3}) {
+    const auto simulation = column(dimension, GetParam());
+    simulation->advance_to(0.8);
+    const auto x = by_id(simulation->particles(), "position"), x0 = by_id(simulation->particles(), "initial_position");
+    double spread = 0;
+    for (std::size_t p = 0; p < x.size(); ++p) spread = std::max(spread, std::abs(x[p] - x0[p]));
+    EXPECT_GT(spread, 0.8) << dimension << "-D";
+    for (int axis = 0; axis < dimension - 1; ++axis)
+      EXPECT_LT(asymmetry(simulation->particles(), axis), 1e-12) << dimension << "-D, axis " << axis;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Schemes, SymmetricCollapse, ::testing::ValuesIn(all_schemes()), scheme_name);
+INSTANTIATE_TEST_SUITE_P(Schemes, SymmetricCollapse, ::testing::ValuesIn(survivors()), scheme_name);
 
 }  // namespace
 }  // namespace sluice
