@@ -5,8 +5,8 @@
 namespace sluice {
 
 template <int Dim>
-void activate_blocks(Scene<Dim>& scene, double allowance) {
-  if (!scene.blocks.particle_blocks().empty() && scene.travelled < allowance) return;
+void activate_blocks(Scene<Dim>& scene) {
+  if (!scene.blocks.particle_blocks().empty() && scene.travelled < tile_margin) return;
   const auto timing = scene.clock.time(Stage::sort);
   scene.blocks.sort(scene.particles, scene.grid, scene.shape->degree());
   scene.nodes.resize(scene.blocks, scene.shape->degree());
@@ -145,7 +145,7 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
 }
 
 #define SLUICE_INSTANTIATE(Dim)                                                \
-  template void activate_blocks<Dim>(Scene<Dim>&, double);                     \
+  template void activate_blocks<Dim>(Scene<Dim>&);                             \
   template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double);                \
   template void velocity_from_momentum<Dim>(Scene<Dim>&);                      \
   template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool);           \

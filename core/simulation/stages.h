@@ -16,10 +16,9 @@ struct Workspace {
   StrainIncrements<Dim> strain;  ///< views into `numbers`, long enough for the largest block
 };
 
-/// Sorts the particles into blocks if one of them may have left the tile of its block: if `travelled` exceeds
-/// `allowance` cells (at most tile_margin).
+/// Sorts the particles into blocks if one of them may have left the tile of its block.
 template <int Dim>
-void activate_blocks(Scene<Dim>& scene, double allowance = tile_margin);
+void activate_blocks(Scene<Dim>& scene);
 
 /// Particles to nodes, eqs. (14)-(16): fills the tiles of all blocks.
 template <int Dim>

@@ -15,7 +15,8 @@ void CellAverages<Dim>::resize(const Blocks<Dim>& blocks) {
   cell_.resize(particles);
 }
 
-/// The cell of each particle of a block in the block's tile, first axis fastest; points outside of the tile count to its rim.
+/// The cell of each particle of a block in the block's tile, first axis fastest; points outside of the tile count to
+/// its rim.
 template <int Dim>
 SLUICE_MULTITARGET void locate_in_tile(const BlockParticles<Dim>& block, int width, std::int32_t* __restrict place) {
   const std::uint32_t count = block.end - block.begin;
@@ -35,12 +36,16 @@ SLUICE_MULTITARGET void locate_in_tile(const BlockParticles<Dim>& block, int wid
 }
 
 template <int Dim>
+void CellAverages<Dim>::locate(const BlockParticles<Dim>& block) {
+  locate_in_tile<Dim>(block, width, cell_.data() + block.begin);
+}
+
+template <int Dim>
 void CellAverages<Dim>::add(std::size_t number, const BlockParticles<Dim>& block, const double* weight,
                             const double* quantity) {
   Sums* tile = tiles_.data() + number * tile_cells;
   std::fill_n(tile, tile_cells, Sums{});
-  std::int32_t* const place = cell_.data() + block.begin;
-  locate_in_tile<Dim>(block, width, place);
+  const std::int32_t* const place = cell_.data() + block.begin;
   for (std::uint32_t p = 0; p < block.end - block.begin; ++p) {
     const double w = weight[block.begin + p];
     tile[place[p]].weight += w;
@@ -50,8 +55,8 @@ void CellAverages<Dim>::add(std::size_t number, const BlockParticles<Dim>& block
 
 namespace {
 
-/// Cells [low, high) of a tile along one axis that the tile of a neighbour, `shift` blocks on, reaches too; cell i here is
-/// cell i + offset there.
+/// Cells [low, high) of a tile along one axis that the tile of a neighbour, `shift` blocks on, reaches too; cell i here
+/// is cell i + offset there.
 struct Reach {
   int low, high, offset;
   Reach(int tile, int block, int shift)

@@ -84,7 +84,8 @@ std::vector<TimeStepLimit> TotalStress<Dim>::hard_limits(const Scene<Dim>& scene
 
 template <int Dim>
 void TotalStress<Dim>::step(Scene<Dim>& scene, double dt) {
-  activate_blocks(scene, f_bar_ ? 0.5 * tile_margin : tile_margin);
+  activate_blocks(scene);
+  if (f_bar_) cells_.resize(scene.blocks);
   begin_reports(scene);
   switch (timing_) {
     case StressTiming::usf:
@@ -164,6 +165,7 @@ void TotalStress<Dim>::gather_motion_and_update_stress(Scene<Dim>& scene, double
       const StrainIncrements<Dim> strain = f_bar_ ? kept_strain(scene, block.begin) : work.strain;
       MotionUpdate<Dim> own = update;
       own.strain = &strain;
+      if (f_bar_) cells_.locate(scene.view(block));
       scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
       motion_[b] = scene.shape->gather_motion(scene.view(block), work.motion_tile.data(), own);
       if (!f_bar_) stress_[b] = materials_.update_stress(scene.particles, scene.blocks, block, strain);
@@ -181,7 +183,10 @@ void TotalStress<Dim>::update_stress(Scene<Dim>& scene, double dt, bool then_sca
       scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
       const double largest = scene.shape->gather_strain(scene.view(block), work.motion_tile.data(), dt, strain);
       motion_[b].largest_strain_rate = dt > 0 ? largest / dt : 0;
-      if (f_bar_) return;
+      if (f_bar_) {
+        cells_.locate(scene.view(block));
+        return;
+      }
       stress_[b] = materials_.update_stress(scene.particles, scene.blocks, block, strain);
       if (then_scatter_force)
         scene.shape->scatter(ScatterWhat::force, scene.scatter_input(block), 0, nullptr, scene.nodes.force_tile(b));
@@ -194,7 +199,6 @@ void TotalStress<Dim>::update_stress(Scene<Dim>& scene, double dt, bool then_sca
 template <int Dim>
 void TotalStress<Dim>::apply_f_bar(Scene<Dim>& scene, bool then_scatter_force) {
   const auto timing = scene.clock.time(Stage::stress);
-  cells_.resize(scene.blocks);
   const double* volume = scene.particles.columns.data(scene.particles.volume);
   for_each_block(scene, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     double* const dilation = work.numbers.data();
