@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -33,10 +34,12 @@ void wait_until(const std::atomic<Word>& word, const Done& done) {
   }
 }
 
-/// The items that a thread begins with; others may take from it.
+/// The items that a thread begins with; others may take from it. `next` holds the number of the call in its upper half
+/// and the next free item in its lower half, so that nobody takes an item of another call than the one that he was
+/// called to.
 struct alignas(64) Share {
-  std::atomic<std::size_t> next{0};
-  std::size_t end = 0;
+  std::atomic<std::uint64_t> next{0};
+  std::atomic<std::uint32_t> end{0};
 };
 
 class Team {
@@ -46,7 +49,7 @@ class Team {
   }
   ~Team() {
     closing_ = true;
-    call();
+    announce();
     for (auto& member : members_) member.join();
   }
   Team(const Team&) = delete;
@@ -54,43 +57,55 @@ class Team {
 
   int size() const { return static_cast<int>(shares_.size()); }
 
+  /// Returns when all items are done. It does not wait for members that came too late to do any.
   void run(std::size_t count, const LoopBody& body) {
-    const std::size_t threads = shares_.size();
-    chunk_ = std::max<std::size_t>(1, count / (threads * 16));
-    for (std::size_t t = 0; t < threads; ++t) {
-      shares_[t].next.store(count * t / threads, std::memory_order_relaxed);
-      shares_[t].end = count * (t + 1) / threads;
-    }
+    assert(count < (std::size_t{1} << 31));
+    const std::uint64_t threads = shares_.size(), items = count, call = calls_.load(std::memory_order_relaxed) + 1;
     body_ = body;
-    busy_.store(static_cast<std::uint32_t>(threads - 1), std::memory_order_relaxed);
-    call();
-    work(0);
-    wait_until(busy_, [](std::uint32_t busy) { return busy == 0; });
+    chunk_.store(static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / (threads * 16))),
+                 std::memory_order_relaxed);
+    undone_.store(static_cast<std::uint32_t>(items), std::memory_order_relaxed);
+    for (std::uint64_t t = 0; t < threads; ++t) {
+      shares_[t].end.store(static_cast<std::uint32_t>(items * (t + 1) / threads), std::memory_order_relaxed);
+      shares_[t].next.store(call << 32 | items * t / threads, std::memory_order_release);
+    }
+    announce();
+    work(static_cast<std::uint32_t>(call), 0);
+    wait_until(undone_, [](std::uint32_t undone) { return undone == 0; });
   }
 
  private:
-  void call() {
+  void announce() {
     calls_.fetch_add(1, std::memory_order_release);
     calls_.notify_all();
   }
 
   void serve(int thread) {
-    for (std::uint32_t heard = 0;; ++heard) {
+    for (std::uint32_t heard = 0;;) {
       wait_until(calls_, [heard](std::uint32_t calls) { return calls != heard; });
       if (closing_) return;
-      work(thread);
-      if (busy_.fetch_sub(1, std::memory_order_release) == 1) busy_.notify_all();
+      heard = calls_.load(std::memory_order_acquire);
+      work(heard, thread);
     }
   }
 
-  void work(int thread) {
-    const std::size_t threads = shares_.size();
-    for (std::size_t k = 0; k < threads; ++k) {
-      Share& share = shares_[(static_cast<std::size_t>(thread) + k) % threads];
+  /// Own share first, then what the others left.
+  void work(std::uint32_t call, int thread) {
+    for (std::size_t k = 0; k < shares_.size(); ++k) {
+      Share& share = shares_[(static_cast<std::size_t>(thread) + k) % shares_.size()];
+      std::uint64_t next = share.next.load(std::memory_order_acquire);
       for (;;) {
-        const std::size_t begin = share.next.fetch_add(chunk_, std::memory_order_relaxed);
-        if (begin >= share.end) break;
-        body_.work(body_.body, begin, std::min(begin + chunk_, share.end), thread);
+        const std::uint32_t begin = static_cast<std::uint32_t>(next);
+        const std::uint32_t chunk = chunk_.load(std::memory_order_relaxed),
+                            last = share.end.load(std::memory_order_relaxed);
+        if (next >> 32 != call || begin >= last) break;
+        const std::uint32_t end = std::min(begin + chunk, last);
+        // If this succeeds the call is not over, and body_, chunk_ and end are those of the call.
+        if (!share.next.compare_exchange_weak(next, std::uint64_t{call} << 32 | end, std::memory_order_acq_rel))
+          continue;
+        next = std::uint64_t{call} << 32 | end;
+        body_.work(body_.body, begin, end, thread);
+        if (undone_.fetch_sub(end - begin, std::memory_order_acq_rel) == end - begin) undone_.notify_all();
       }
     }
   }
@@ -98,8 +113,7 @@ class Team {
   std::vector<Share> shares_;
   std::vector<std::thread> members_;
   LoopBody body_{};
-  std::size_t chunk_ = 1;
-  std::atomic<std::uint32_t> calls_{0}, busy_{0};
+  std::atomic<std::uint32_t> chunk_{1}, calls_{0}, undone_{0};
   std::atomic<bool> closing_{false};
 };
 

@@ -32,8 +32,10 @@ Particles scattered(const GridGeometry<Dim>& g, std::size_t count) {
     particles.material[p] = static_cast<std::int32_t>(generator() % 3);
     for (int a = 0; a < Dim; ++a) {
       const double share = uniform(generator);
-      particles.columns.data(particles.position, a)[p] =
-          g.min[a] + (share < 0.05 ? 0 : share > 0.95 ? 1 : share) * (g.max[a] - g.min[a]);
+      particles.columns.data(particles.position, a)[p] = g.min[a] + (share < 0.05   ? 0
+                                                                     : share > 0.95 ? 1
+                                                                                    : share) *
+                                                                        (g.max[a] - g.min[a]);
     }
     particles.columns.data(particles.mass)[p] = static_cast<double>(p);
   }
@@ -92,7 +94,8 @@ void expect_sorted(int degree) {
     for (std::size_t n = 0; n < static_cast<std::size_t>(neighbourhood<Dim>); ++n) {
       const auto& nodes = blocks.node_blocks()[static_cast<std::size_t>(block.nodes[n])];
       int rest = static_cast<int>(n);
-      for (int a = 0; a < Dim; ++a, rest /= 3) ASSERT_EQ(nodes.first_node[a], block.first_cell[a] + block_width<Dim> * (rest % 3 - 1));
+      for (int a = 0; a < Dim; ++a, rest /= 3)
+        ASSERT_EQ(nodes.first_node[a], block.first_cell[a] + block_width<Dim> * (rest % 3 - 1));
       ASSERT_EQ(nodes.particles[static_cast<std::size_t>(neighbourhood<Dim>) - 1 - n], static_cast<std::int32_t>(b));
     }
   }

@@ -1,4 +1,5 @@
-/// Shape functions, every registered one: partition of unity, linear reproduction up to the wall, gradients, Greville points.
+/// Shape functions, every registered one: partition of unity, linear reproduction up to the wall, gradients, Greville
+/// points.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -83,7 +84,8 @@ std::map<Index<Dim>, double> values(const ShapeKernels<Dim>& shape, const GridGe
   return v;
 }
 
-// Central differences of width 1e-6 cells: errors of 1e-9 of the slope from round-off, and none from curvature (quadratic).
+// Central differences of width 1e-6 cells: errors of 1e-9 of the slope from round-off, and none from curvature
+// (quadratic).
 template <int Dim>
 void expect_gradients(const ShapeKernels<Dim>& shape, const GridGeometry<Dim>& g) {
   std::mt19937 generator(2);

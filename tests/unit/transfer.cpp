@@ -1,5 +1,5 @@
-/// Transfer kernels against sums written out over the stencil of each particle: every shape function, every kind of scatter, with
-/// and without APIC. Particles stand anywhere that a tile reaches, walls and cell edges included.
+/// Transfer kernels against sums written out over the stencil of each particle: every shape function, every kind of
+/// scatter, with and without APIC. Particles stand anywhere that a tile reaches, walls and cell edges included.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -86,7 +86,8 @@ struct Fixture {
   int tile_size() const { return power(tile_width<Dim>(shape.degree()), Dim); }
   int place_in_tile(const Index<Dim>& node) const {
     int place = 0;
-    for (int a = Dim - 1; a >= 0; --a) place = place * tile_width<Dim>(shape.degree()) + node[a] - first_cell[a] + tile_margin;
+    for (int a = Dim - 1; a >= 0; --a)
+      place = place * tile_width<Dim>(shape.degree()) + node[a] - first_cell[a] + tile_margin;
     return place;
   }
   double sigma(std::size_t p, int a, int b) const {
@@ -101,7 +102,8 @@ template <int Dim>
 struct Dense {
   std::vector<std::array<double, 4>> momentum, force;
 
-  Dense(const Fixture<Dim>& f, bool affine) : momentum(static_cast<std::size_t>(f.tile_size())), force(momentum.size()) {
+  Dense(const Fixture<Dim>& f, bool affine)
+      : momentum(static_cast<std::size_t>(f.tile_size())), force(momentum.size()) {
     for (std::size_t p = 0; p < particles; ++p) {
       const Vector<Dim> x = f.at(p);
       const Stencil<Dim> s = f.shape.stencil(f.grid, x);
@@ -113,7 +115,8 @@ struct Dense {
           double velocity = f.v[a][p];
           for (int b = 0; b < Dim; ++b) {
             if (affine)
-              velocity += f.c[static_cast<std::size_t>(a * Dim + b)][p] * (f.shape.node_position(f.grid, b, s.node[i][b]) - x[b]);
+              velocity += f.c[static_cast<std::size_t>(a * Dim + b)][p] *
+                          (f.shape.node_position(f.grid, b, s.node[i][b]) - x[b]);
             force[place][static_cast<std::size_t>(a + 1)] -= f.volume[p] * f.sigma(p, a, b) * s.gradient[i][b];
           }
           momentum[place][static_cast<std::size_t>(a + 1)] += f.mass[p] * s.value[i] * velocity;
@@ -148,7 +151,8 @@ void expect_scatter(const Fixture<Dim>& f, bool affine) {
         const auto component = static_cast<std::size_t>(k);
         const double impulse = what == momentum_and_impulse ? dt * dense.force[i][component] : 0;
         if (what != force) {
-          ASSERT_NEAR(tile.lanes.data()[i][k], dense.momentum[i][component] + impulse, 1e-11) << "node " << i << ", " << k;
+          ASSERT_NEAR(tile.lanes.data()[i][k], dense.momentum[i][component] + impulse, 1e-11)
+              << "node " << i << ", " << k;
         }
         if (what == force || what == momentum_and_force) {
           ASSERT_NEAR(force_tile.lanes.data()[i][k], dense.force[i][component], 1e-9) << "node " << i << ", " << k;
@@ -294,9 +298,11 @@ void expect_cell_averages() {
   Blocks<Dim> blocks;
   blocks.sort(points, g, 1);
   for (int a = 0; a < Dim; ++a)
-    for (double& x : points.columns.values(points.position, a)) x = std::clamp(x + (uniform(generator) - 0.5) * 0.99, 0.0, g.max[a]);
+    for (double& x : points.columns.values(points.position, a))
+      x = std::clamp(x + (uniform(generator) - 0.5) * 0.99, 0.0, g.max[a]);
   std::vector<double> quantity(points.size()), weight(points.size()), mean(points.size());
-  for (std::size_t p = 0; p < points.size(); ++p) quantity[p] = uniform(generator), weight[p] = 0.5 + uniform(generator);
+  for (std::size_t p = 0; p < points.size(); ++p)
+    quantity[p] = uniform(generator), weight[p] = 0.5 + uniform(generator);
 
   const auto cell_of = [&](std::size_t p) {
     Vector<Dim> x;
@@ -319,8 +325,11 @@ void expect_cell_averages() {
       work(b, view, block.begin);
     }
   };
-  for_each_block([&](std::size_t b, const auto& view, std::size_t begin) { averages.add(b, view, weight.data(), quantity.data() + begin); });
-  for_each_block([&](std::size_t b, const auto& view, std::size_t begin) { averages.mean(blocks, b, view, mean.data() + begin); });
+  for_each_block([&](std::size_t b, const auto& view, std::size_t begin) {
+    averages.add(b, view, weight.data(), quantity.data() + begin);
+  });
+  for_each_block(
+      [&](std::size_t b, const auto& view, std::size_t begin) { averages.mean(blocks, b, view, mean.data() + begin); });
   for (std::size_t p = 0; p < points.size(); ++p) {
     const auto& [weights, products] = sums[cell_of(p)];
     ASSERT_NEAR(mean[p], products / weights, 1e-14) << "particle " << p;

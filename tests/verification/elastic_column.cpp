@@ -79,7 +79,8 @@ TEST(ElasticColumn, EquilibriumWithOnePointACell) {
     }
 }
 
-// The toe of a slope is a sliver of a few points, and a motion that strains none of them costs nothing; the body as a whole is held.
+// The toe of a slope is a sliver of a few points, and a motion that strains none of them costs nothing; the body as a
+// whole is held.
 TEST(ElasticColumn, EquilibriumOfASlopeWithAThinToe) {
   for (const char* shape : {"linear", "quadratic_bspline"}) {
     Scheme scheme;

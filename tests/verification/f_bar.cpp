@@ -1,5 +1,5 @@
-/// F-bar on cell averages. Source: Coombs et al. (2018), in rates: the volumetric strain increment of a particle gives way to the
-/// volume-weighted mean of its cell, the deviatoric one stays.
+/// F-bar on cell averages. Source: Coombs et al. (2018), in rates: the volumetric strain increment of a particle gives
+/// way to the volume-weighted mean of its cell, the deviatoric one stays.
 #include <map>
 #include <random>
 
@@ -10,11 +10,13 @@ namespace {
 
 std::unique_ptr<Simulation> block(int dimension, const Scheme& scheme, bool f_bar) {
   const bool flat = dimension == 2;
-  return simulate({.grid = flat ? "{min: [-9 m, -9 m], max: [9 m, 9 m], cell: 1 m}" : "{min: [-6 m, -6 m, -6 m], max: [6 m, 6 m, 6 m], cell: 1 m}",
-                   .material = "{model: linear_elastic, density: 1000 kg/m3, youngs_modulus: 1 MPa, poisson_ratio: 0.3}",
-                   .bodies = flat ? "  - {material: soil, box: {min: [-6 m, -6 m], max: [6 m, 6 m]}}"
-                                  : "  - {material: soil, box: {min: [-3 m, -3 m, -3 m], max: [3 m, 3 m, 3 m]}}",
-                   .scheme = scheme.with(fmt::format("time_step: 1 ms, f_bar: {}", f_bar))});
+  return simulate(
+      {.grid = flat ? "{min: [-9 m, -9 m], max: [9 m, 9 m], cell: 1 m}"
+                    : "{min: [-6 m, -6 m, -6 m], max: [6 m, 6 m, 6 m], cell: 1 m}",
+       .material = "{model: linear_elastic, density: 1000 kg/m3, youngs_modulus: 1 MPa, poisson_ratio: 0.3}",
+       .bodies = flat ? "  - {material: soil, box: {min: [-6 m, -6 m], max: [6 m, 6 m]}}"
+                      : "  - {material: soil, box: {min: [-3 m, -3 m, -3 m], max: [3 m, 3 m, 3 m]}}",
+       .scheme = scheme.with(fmt::format("time_step: 1 ms, f_bar: {}", f_bar))});
 }
 
 struct Invariants {
@@ -55,8 +57,10 @@ TEST_P(FBar, UniformVolumetricStrainIsUnchanged) {
     for (const bool f_bar : {false, true}) {
       const auto simulation = block(dimension, GetParam(), f_bar);
       for (int a = 0; a < dimension; ++a) {
-        set_column(simulation->particles(), "velocity", a, [&](const auto& x) { return -0.1 * x[static_cast<std::size_t>(a)]; });
-        if (GetParam().affine()) set_column(simulation->particles(), "affine_velocity", a * (dimension + 1), [](const auto&) { return -0.1; });
+        set_column(simulation->particles(), "velocity", a,
+                   [&](const auto& x) { return -0.1 * x[static_cast<std::size_t>(a)]; });
+        if (GetParam().affine())
+          set_column(simulation->particles(), "affine_velocity", a * (dimension + 1), [](const auto&) { return -0.1; });
       }
       take_steps(*simulation, 1);
       found.push_back(invariants(simulation->particles()));
@@ -67,16 +71,18 @@ TEST_P(FBar, UniformVolumetricStrainIsUnchanged) {
       for (std::size_t p = 0; p < x.size(); ++p) {
         const bool inside = std::max({std::abs(x[p]), std::abs(y[p]), std::abs(z[p])}) < (dimension == 2 ? 4 : 1);
         if (inside) {
-          ASSERT_NEAR(found.back().mean[p], -1e6 / 1.2 * 0.1 * dimension * 1e-3, 1e-8) << dimension << "-D, f_bar " << f_bar;
+          ASSERT_NEAR(found.back().mean[p], -1e6 / 1.2 * 0.1 * dimension * 1e-3, 1e-8)
+              << dimension << "-D, f_bar " << f_bar;
         }
       }
     }
   }
 }
 
-// Random velocities strain the particles of a cell differently: a checkerboard and everything else that four or eight points can
-// hold. With F-bar all particles of a cell have one mean stress, the volume-weighted mean of those without F-bar (particles are
-// of equal volume), while the deviatoric part is as without. Tolerance: 1e-9 of the stresses, which are of the order of 1 kPa.
+// Random velocities strain the particles of a cell differently: a checkerboard and everything else that four or eight
+// points can hold. With F-bar all particles of a cell have one mean stress, the volume-weighted mean of those without
+// F-bar (particles are of equal volume), while the deviatoric part is as without. Tolerance: 1e-9 of the stresses,
+// which are of the order of 1 kPa.
 TEST_P(FBar, AVolumetricCheckerboardIsAveraged) {
   for (const int dimension : {2, 3}) {
     std::vector<Invariants> found;
@@ -115,7 +121,8 @@ TEST_P(FBar, AVolumetricCheckerboardIsAveraged) {
       ASSERT_NEAR(found[1].mean[p], s.plain / s.count, 1e-6) << dimension << "-D, particle " << p;
       largest_change = std::max(largest_change, std::abs(found[1].mean[p] - found[0].mean[p]));
       for (std::size_t i = 0; i < found[0].in_plane.size(); ++i)
-        ASSERT_NEAR(found[1].in_plane[i][p], found[0].in_plane[i][p], 1e-6) << dimension << "-D, particle " << p << ", " << i;
+        ASSERT_NEAR(found[1].in_plane[i][p], found[0].in_plane[i][p], 1e-6)
+            << dimension << "-D, particle " << p << ", " << i;
     }
     EXPECT_GT(largest_change, 10) << "the field had nothing to average";
   }

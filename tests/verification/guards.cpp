@@ -1,5 +1,5 @@
-/// What stops a run, and with which words: outflow, values that are not finite, inversion, a fixed step too long. Sources: the
-/// declared policies; the hard limits h / (c + |v|), h / (2 |v|) and 1 / (2 strain rate).
+/// What stops a run, and with which words: outflow, values that are not finite, inversion, a fixed step too long.
+/// Sources: the declared policies; the hard limits h / (c + |v|), h / (2 |v|) and 1 / (2 strain rate).
 #include <limits>
 
 #include "core/simulation/guard.h"
@@ -14,9 +14,10 @@ std::unique_ptr<Simulation> leaving_block(int dimension, const std::string& outf
   const bool flat = dimension == 2;
   return simulate({.grid = flat ? "{min: [0 m, 0 m], max: [8 m, 4 m], cell: 0.5 m}"
                                 : "{min: [0 m, 0 m, 0 m], max: [8 m, 4 m, 4 m], cell: 0.5 m}",
-                   .bodies = flat ? "  - {material: soil, box: {min: [6 m, 1 m], max: [7 m, 2 m]}, velocity: [2 m/s, 0]}"
-                                  : "  - {material: soil, box: {min: [6 m, 1 m, 1 m], max: [7 m, 2 m, 2 m]}, velocity: "
-                                    "[2 m/s, 0, 0]}",
+                   .bodies = flat
+                                 ? "  - {material: soil, box: {min: [6 m, 1 m], max: [7 m, 2 m]}, velocity: [2 m/s, 0]}"
+                                 : "  - {material: soil, box: {min: [6 m, 1 m, 1 m], max: [7 m, 2 m, 2 m]}, velocity: "
+                                   "[2 m/s, 0, 0]}",
                    .scheme = scheme.with("time_step: 5 ms"),
                    .outflow = outflow});
 }
@@ -115,13 +116,14 @@ TEST_P(Guard, NamesTheParticleWhoseStressIsNotFinite) {
   const std::size_t rock = rock_of(particles);
   const auto id = particles.id[rock];
   particles.columns.data(particles.stress, 3)[rock] = std::numeric_limits<double>::quiet_NaN();
-  expect_words(message_of<PhysicsError>([&] { take_steps(*simulation, 2); }), {fmt::format("particle {} (rock)", id), "not finite"});
+  expect_words(message_of<PhysicsError>([&] { take_steps(*simulation, 2); }),
+               {fmt::format("particle {} (rock)", id), "not finite"});
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, Guard, ::testing::ValuesIn(all_schemes()), scheme_name);
 
-// Two points close in on each other within a cell by more than their volume in one step: a computed step would not let that
-// happen, so the velocities are set between two steps.
+// Two points close in on each other within a cell by more than their volume in one step: a computed step would not let
+// that happen, so the velocities are set between two steps.
 TEST(GuardOfVolumes, NamesAnInvertedParticle) {
   const auto simulation = simulate({.grid = "{min: [0 m, 0 m], max: [8 m, 8 m], cell: 1 m}",
                                     .bodies = "  - {material: soil, box: {min: [2 m, 2 m], max: [6 m, 6 m]}}"});
@@ -152,10 +154,11 @@ TEST(FixedStep, MovingMaterialCountsAgainstTheLimit) {
 
 // 10^12 cells; only those that hold material cost anything. Half a gigabyte and some hours would be needed otherwise.
 TEST(ActiveBlocks, ATinyBodyInAHugeGridRuns) {
-  const auto simulation = simulate({.grid = "{min: [0 m, 0 m], max: [1000000 m, 1000000 m], cell: 1 m}",
-                                    .bodies = "  - {material: soil, box: {min: [700000 m, 900000 m], max: [700003 m, 900003 m]}, "
-                                              "velocity: [5 m/s, 0]}",
-                                    .gravity = "[0, -10 m/s2]"});
+  const auto simulation =
+      simulate({.grid = "{min: [0 m, 0 m], max: [1000000 m, 1000000 m], cell: 1 m}",
+                .bodies = "  - {material: soil, box: {min: [700000 m, 900000 m], max: [700003 m, 900003 m]}, "
+                          "velocity: [5 m/s, 0]}",
+                .gravity = "[0, -10 m/s2]"});
   EXPECT_EQ(simulation->particles().size(), 36u);
   simulation->advance_to(1);
   EXPECT_NEAR(by_id(simulation->particles(), "position")[0], 700005.25, 1e-6);

@@ -61,8 +61,8 @@ class SymmetricCollapse : public ::testing::TestWithParam<Scheme> {
   void TearDown() override { set_thread_count(1); }
 };
 
-// After 0.8 s and 100 steps the column has spread by half of its width. Tolerance: 1e-12 cells, a hundred times the round-off
-// that is found (1e-14); the flow is not chaotic over so short a time.
+// After 0.8 s and 100 steps the column has spread by half of its width. Tolerance: 1e-12 cells, a hundred times the
+// round-off that is found (1e-14); the flow is not chaotic over so short a time.
 TEST_P(SymmetricCollapse, StaysSymmetric) {
   set_thread_count(2);
   for (const int dimension : {2, 3}) {
