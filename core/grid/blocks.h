@@ -43,6 +43,9 @@ class Blocks {
   /// Sorts the particles and finds the active blocks. `degree` is that of the shape functions.
   void sort(Particles& particles, const GridGeometry<Dim>& grid, int degree);
 
+  /// Forgets all blocks, when the particles have changed otherwise than by moving: the next step sorts.
+  void clear() { particle_blocks_.clear(), node_blocks_.clear(), batches_.clear(); }
+
   const std::vector<ParticleBlock<Dim>>& particle_blocks() const { return particle_blocks_; }
   const std::vector<NodeBlock<Dim>>& node_blocks() const { return node_blocks_; }
   const std::vector<Batch>& batches() const { return batches_; }

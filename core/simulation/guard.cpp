@@ -63,6 +63,18 @@ void throw_first_bad_particle(const Scene<Dim>& scene) {
 }
 
 template <int Dim>
+void throw_time_step_collapsed(const Scene<Dim>& scene, const TimeStepLimit& limit) {
+  const Particles& ps = scene.particles;
+  std::size_t fastest = 0;
+  double highest = -1;
+  for (std::size_t p = 0; p < ps.size(); ++p)
+    if (const double v = length<Dim>(vector_at<Dim>(ps.columns, ps.velocity, p)); v > highest) fastest = p, highest = v;
+  throw PhysicsError(
+      fmt::format("the physics went bad: the {} limit has cut the time step to {:.3g} s; the fastest is {}", limit.name,
+                  limit.seconds, describe(scene, fastest)));
+}
+
+template <int Dim>
 std::size_t apply_outflow(Scene<Dim>& scene, OutflowPolicy policy) {
   Particles& ps = scene.particles;
   std::vector<std::uint32_t> kept;
@@ -92,13 +104,14 @@ std::size_t apply_outflow(Scene<Dim>& scene, OutflowPolicy policy) {
   const std::size_t removed = ps.size() - kept.size();
   if (removed > 0) {
     ps.permute(kept);
-    scene.travelled = 2 * tile_margin;  // the blocks no longer hold: sort before the next step
+    scene.blocks.clear();
   }
   return removed;
 }
 
-#define SLUICE_INSTANTIATE(Dim)                                   \
-  template void throw_first_bad_particle<Dim>(const Scene<Dim>&); \
+#define SLUICE_INSTANTIATE(Dim)                                                          \
+  template void throw_first_bad_particle<Dim>(const Scene<Dim>&);                        \
+  template void throw_time_step_collapsed<Dim>(const Scene<Dim>&, const TimeStepLimit&); \
   template std::size_t apply_outflow<Dim>(Scene<Dim>&, OutflowPolicy);
 SLUICE_INSTANTIATE(2)
 SLUICE_INSTANTIATE(3)

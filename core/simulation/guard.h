@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/case/case.h"
-#include "core/simulation/scene.h"
+#include "core/simulation/physics_module.h"
 
 namespace sluice {
 
@@ -10,6 +10,10 @@ namespace sluice {
 /// place, speed and step. To be called when a report says that there is one.
 template <int Dim>
 [[noreturn]] void throw_first_bad_particle(const Scene<Dim>& scene);
+
+/// Throws PhysicsError naming the fastest particle and the limit that made the step useless.
+template <int Dim>
+[[noreturn]] void throw_time_step_collapsed(const Scene<Dim>& scene, const TimeStepLimit& limit);
 
 /// A particle left the grid under `outflow: error`: exit code 1.
 class OutflowError : public std::runtime_error {

@@ -191,7 +191,8 @@ class Run {
     for (const auto& energy : simulation_->energies()) row.emplace_back(energy.second);
     history_->append(row);
     std::vector<CsvTable::Cell> observed = {simulation_->steps(), time};
-    for (const auto& observation : observations_) observed.emplace_back(observation->evaluate(simulation_->particles()));
+    for (const auto& observation : observations_)
+      observed.emplace_back(observation->evaluate(simulation_->particles()));
     observed_->append(observed);
   }
 

@@ -32,6 +32,8 @@ class SimulationOf final : public Simulation {
 
   StepInfo advance(double until) override {
     const TimeStepLimit dt = choose_time_step(*module_, scene_, until);
+    longest_dt_ = std::max(longest_dt_, dt.seconds);
+    if (dt.name != "output" && dt.seconds < collapse * longest_dt_) throw_time_step_collapsed(scene_, dt);
     module_->step(scene_, dt.seconds);
     if (!scene_.motion.inside) removed_ += apply_outflow(scene_, definition_.outflow);
     const bool arrives = until - scene_.time <= dt.seconds * (1 + 1e-6);
@@ -57,8 +59,12 @@ class SimulationOf final : public Simulation {
     store_particles(scene_.particles, archive);
     archive.integers["blocks"] = scene_.blocks.record();
     archive.integers["step"] = {scene_.step, static_cast<std::int64_t>(removed_)};
-    archive.reals["loop"] = {scene_.time, scene_.previous_dt, scene_.travelled, scene_.motion.largest_speed_squared,
-                             scene_.motion.largest_strain_rate};
+    archive.reals["loop"] = {scene_.time,
+                             scene_.previous_dt,
+                             scene_.travelled,
+                             scene_.motion.largest_speed_squared,
+                             scene_.motion.largest_strain_rate,
+                             longest_dt_};
     module_->store(archive);
   }
 
@@ -75,6 +81,7 @@ class SimulationOf final : public Simulation {
     scene_.travelled = loop[2];
     scene_.motion.largest_speed_squared = loop[3];
     scene_.motion.largest_strain_rate = loop[4];
+    longest_dt_ = loop[5];
     module_->restore(archive);
   }
 
@@ -96,6 +103,10 @@ class SimulationOf final : public Simulation {
   Scene<Dim> scene_;
   std::unique_ptr<PhysicsModule<Dim>> module_;
   std::size_t removed_ = 0;
+  double longest_dt_ = 0;  // [s]
+
+  /// A step shorter than this share of the longest one means that the run goes nowhere.
+  static constexpr double collapse = 1e-4;
 };
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace sluice {
 
 template <int Dim>
 void activate_blocks(Scene<Dim>& scene) {
-  if (!scene.blocks.particle_blocks().empty() && scene.travelled < tile_margin) return;
+  if (!scene.blocks.particle_blocks().empty() && scene.travelled < travel_allowance) return;
   const auto timing = scene.clock.time(Stage::sort);
   scene.blocks.sort(scene.particles, scene.grid, scene.shape->degree());
   scene.nodes.resize(scene.blocks, scene.shape->degree());
@@ -23,9 +23,6 @@ void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt) {
 }
 
 namespace {
-
-/// Nodes lighter than this share of a particle carry no velocity: their quotients would be noise.
-constexpr double negligible_mass = 1e-12;
 
 /// Calls body(number) for every node of the block that particles can reach.
 template <int Dim, class Body>
@@ -70,20 +67,23 @@ SLUICE_MULTITARGET void accelerate(const NodeBlock<Dim>& nodes, const Lane* mome
   for_reached_nodes(
       nodes, [&](int n) __attribute__((always_inline)) {
         const double mass = momentum[n][0];
-        const bool heavy = mass > lightest;
-        const double inverse = heavy ? 1 / mass : 0;
+        const double inverse = mass > 0 ? 1 / mass : 0;
         const Lane before = inverse * vector_part<Dim>(momentum[n]);
-        Lane change = heavy ? gravity_kick : Lane{};
-        if (force != nullptr) change += (kick * inverse) * vector_part<Dim>(force[n]);
+        Lane change = mass > 0 ? gravity_kick : Lane{};
+        if (force != nullptr && mass > lightest) change += (kick * inverse) * vector_part<Dim>(force[n]);
         store_motion<Dim>(before + change, change, motion + n * motion_lanes<Dim>);
       });
 }
 
 namespace {
 
+/// Forces on nodes lighter than this [kg] are left out: their quotients would be noise. (Velocities are not: momentum
+/// and mass go to zero together.)
 template <int Dim>
 double lightest_node(const Scene<Dim>& scene) {
-  return scene.particles.size() == 0 ? 0 : negligible_mass * scene.particles.columns.values(scene.particles.mass)[0];
+  return scene.particles.size() == 0
+             ? 0
+             : scene.shape->negligible_weight() * scene.particles.columns.values(scene.particles.mass)[0];
 }
 
 }  // namespace

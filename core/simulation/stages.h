@@ -16,6 +16,10 @@ struct Workspace {
   StrainIncrements<Dim> strain;  ///< views into `numbers`, long enough for the largest block
 };
 
+/// Cells that a particle may travel between sorts: not quite the margin of the tiles, for `Scene::travelled` is a sum
+/// with round-off.
+inline constexpr double travel_allowance = 0.999 * tile_margin;
+
 /// Sorts the particles into blocks if one of them may have left the tile of its block.
 template <int Dim>
 void activate_blocks(Scene<Dim>& scene);

@@ -51,7 +51,9 @@ SLUICE_ALWAYS_INLINE void weigh_axis(const double* __restrict x, int count, doub
     const double s = (x[p] - low) * inverse;
     const double floor = std::floor(s), positive = floor > 0 ? floor : 0;
     // A point on the upper face of the grid counts to the last cell.
-    const double cell = positive < last_cell ? positive : last_cell, t = s - cell;
+    const double cell = positive < last_cell ? positive : last_cell, in_cell = s - cell;
+    const double above = in_cell > Shape::hair ? in_cell : Shape::hair;
+    const double t = above < 1 - Shape::hair ? above : 1 - Shape::hair;
     const double first = cell == 0 ? 1.0 : 0.0, last = cell == last_cell ? 1.0 : 0.0;
     double value[Nodes], slope[Nodes], offset[Nodes], weight[Nodes];
     Shape::evaluate(t, first, last, value, slope, offset);
@@ -416,6 +418,7 @@ template <int Dim, class Shape>
 class ShapeKernelsOf final : public ShapeKernels<Dim> {
  public:
   int degree() const override { return Shape::degree; }
+  double negligible_weight() const override { return Shape::negligible_weight; }
 
   double node_position(const GridGeometry<Dim>& grid, int axis, int i) const override {
     const auto a = static_cast<std::size_t>(axis);

@@ -6,6 +6,12 @@ namespace shape {
 /// Piecewise linear shape functions on the cells: docs/theory.md, eq. (12).
 struct Linear {
   static constexpr int degree = 1;
+  /// Transfers keep points this far inside the cell, in cells. A point on a node has no weight on the next one, whose
+  /// velocity would then be unknown and the gradient wrong.
+  static constexpr double hair = 1e-14;
+  /// The slope, and with it the force on a node, does not go to zero with the weight: the acceleration of a node that
+  /// holds but a hair would be noise.
+  static constexpr double negligible_weight = 1e-11;
 
   /// At t in [0, 1) of a cell: values N, slopes dN/dt, and offsets of the nodes from the cell's lower edge, in cells.
   /// `first` and `last` are 1 in the first and last cell of the axis, else 0.

@@ -8,6 +8,9 @@ namespace shape {
 /// eq. (13).
 struct QuadraticBSpline {
   static constexpr int degree = 2;
+  static constexpr double hair = 0;
+  /// Weight and slope go to zero together, the weight as its square: quotients are good down to round-off.
+  static constexpr double negligible_weight = 1e-12;
 
   /// At t in [0, 1) of a cell: values N, slopes dN/dt, and offsets of the nodes from the cell's lower edge, in cells.
   /// `first` and `last` are 1 in the first and last cell of the axis, else 0.

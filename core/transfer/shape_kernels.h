@@ -93,6 +93,8 @@ class ShapeKernels {
   virtual ~ShapeKernels() = default;
 
   virtual int degree() const = 0;  ///< cell i reaches nodes i … i + degree on each axis
+  /// A node with less than this share of a particle takes no force.
+  virtual double negligible_weight() const = 0;
   virtual Stencil<Dim> stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x) const = 0;
   /// Position of node (control point) `i` of axis `axis` [m]: sum_i N_i(x) position_i = x.
   virtual double node_position(const GridGeometry<Dim>& grid, int axis, int i) const = 0;

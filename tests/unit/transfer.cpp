@@ -325,6 +325,7 @@ void expect_cell_averages() {
       work(b, view, block.begin);
     }
   };
+  for_each_block([&](std::size_t, const auto& view, std::size_t) { averages.locate(view); });
   for_each_block([&](std::size_t b, const auto& view, std::size_t begin) {
     averages.add(b, view, weight.data(), quantity.data() + begin);
   });
