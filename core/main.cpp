@@ -12,7 +12,7 @@
 #include "core/case/registry.h"
 #include "core/output/pictures.h"
 #include "core/simulation/guard.h"
-#include "core/simulation/parallel.h"
+#include "core/parallel/parallel.h"
 #include "core/simulation/physics_module.h"
 #include "core/simulation/prediction.h"
 #include "core/simulation/run.h"

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "core/simulation/parallel.h"
+#include "core/parallel/parallel.h"
 
 namespace sluice {
 

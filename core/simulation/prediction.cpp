@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/output/observation.h"
-#include "core/simulation/parallel.h"
+#include "core/parallel/parallel.h"
 #include "core/simulation/progress.h"
 #include "core/simulation/simulation.h"
 

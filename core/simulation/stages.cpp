@@ -1,6 +1,6 @@
 #include "core/simulation/stages.h"
 
-#include "core/simulation/multitarget.h"
+#include "core/parallel/multitarget.h"
 
 namespace sluice {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/simulation/parallel.h"
+#include "core/parallel/parallel.h"
 #include "core/simulation/scene.h"
 
 namespace sluice {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/simulation/multitarget.h"
+#include "core/parallel/multitarget.h"
 
 namespace sluice {
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/simulation/multitarget.h"
+#include "core/parallel/multitarget.h"
 #include "core/transfer/shape_kernels.h"
 
 namespace sluice {

@@ -8,7 +8,7 @@
 
 #include <limits>
 
-#include "core/simulation/multitarget.h"
+#include "core/parallel/multitarget.h"
 #include "physics/materials/material.h"
 
 namespace sluice {

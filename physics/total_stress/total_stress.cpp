@@ -136,11 +136,12 @@ void TotalStress<Dim>::step_musl(Scene<Dim>& scene, double dt) {
     std::ranges::copy(columns.values(next_position_, a), columns.data(scene.particles.position, a));
 }
 
-/// With APIC nobody asks for the nodes' change of velocity: momentum and impulse can share a lane. Not with linear functions,
-/// where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::negligible_weight).
+/// With APIC nobody asks for the nodes' change of velocity: momentum and impulse can share a lane. Not with linear
+/// functions, where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::negligible_weight).
 template <int Dim>
 ScatterWhat TotalStress<Dim>::momentum_with_force(const Scene<Dim>& scene) const {
-  return scene.transfer.affine && scene.shape->degree() > 1 ? ScatterWhat::momentum_and_impulse : ScatterWhat::momentum_and_force;
+  return scene.transfer.affine && scene.shape->degree() > 1 ? ScatterWhat::momentum_and_impulse
+                                                            : ScatterWhat::momentum_and_force;
 }
 
 // ---- stages that belong to this module -----------------------------------------------------------------------------

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/case/case.h"
-#include "core/simulation/parallel.h"
+#include "core/parallel/parallel.h"
 #include "core/simulation/simulation.h"
 #include "plain_kernel.h"
 

@@ -1,6 +1,6 @@
 /// The answer depends neither on the number of threads nor on being interrupted: bit for bit. Every comparison is
 /// exact.
-#include "core/simulation/parallel.h"
+#include "core/parallel/parallel.h"
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {

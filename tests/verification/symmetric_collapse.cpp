@@ -3,7 +3,7 @@
 /// one-sided cells and faces, would show as differences of the size of the motion itself.
 #include <map>
 
-#include "core/simulation/parallel.h"
+#include "core/parallel/parallel.h"
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {

@@ -1,4 +1,4 @@
-#include "core/simulation/parallel.h"
+#include "core/parallel/parallel.h"
 
 #include <algorithm>
 #include <atomic>
