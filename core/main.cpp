@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -11,8 +12,8 @@
 #include "core/case/reference.h"
 #include "core/case/registry.h"
 #include "core/output/pictures.h"
-#include "core/simulation/guard.h"
 #include "core/parallel/parallel.h"
+#include "core/simulation/guard.h"
 #include "core/simulation/physics_module.h"
 #include "core/simulation/prediction.h"
 #include "core/simulation/run.h"
@@ -46,6 +47,9 @@ std::vector<Override> overrides_of(const Arguments& arguments) {
 void use_threads(int asked) {
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   if (asked < 0) throw CaseError("--threads: expected a positive number");
+  if (asked > cores)
+    fmt::print(stderr, "warning: {} threads on {} core{} are slower than --threads {}\n", asked, cores,
+               cores == 1 ? "" : "s", cores);
   set_thread_count(asked == 0 ? cores : asked);
 }
 
@@ -112,6 +116,18 @@ void add_case_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--threads", arguments.threads, "Number of threads (default: all cores)");
 }
 
+/// What CLI11 found wrong with the command line, with the commands where that is the trouble.
+[[noreturn]] void refuse_command_line(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  std::vector<std::string> commands;
+  for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (word.empty()) throw CaseError(fmt::format("a command is missing; {}", allowed_words(word, commands)));
+  if (word[0] != '-' && std::find(commands.begin(), commands.end(), word) == commands.end())
+    throw CaseError(fmt::format("there is no command '{}'; {}", word, allowed_words(word, commands)));
+  throw CaseError(fmt::format("{}\nsluice --help and sluice COMMAND --help say what is allowed", error.what()));
+}
+
 int dispatch(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Sluice: the material point method for soil, water and both together", "sluice");
@@ -120,8 +136,9 @@ int dispatch(int argc, char** argv) {
   auto* run_command = app.add_subcommand("run", "Run a case");
   add_case_options(*run_command, arguments);
   run_command->add_option("-o,--output", arguments.output, "Folder for the results (default: results/CASE)");
-  run_command->add_flag("--resume", arguments.resume, "Continue an interrupted run from its latest checkpoint");
-  run_command->add_flag("--force", arguments.force, "Overwrite the results of an earlier run");
+  auto* resume =
+      run_command->add_flag("--resume", arguments.resume, "Continue an interrupted run from its latest checkpoint");
+  run_command->add_flag("--force", arguments.force, "Overwrite the results of an earlier run")->excludes(resume);
   run_command->add_flag("-q,--quiet", arguments.quiet, "Print errors only");
   auto* check_command = app.add_subcommand("check", "Validate a case and predict what it will cost");
   add_case_options(*check_command, arguments);
@@ -137,7 +154,8 @@ int dispatch(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_code::done : exit_code::bad_input;
+    if (error.get_exit_code() != 0) refuse_command_line(app, error, argc, argv);
+    return app.exit(error);  // the help, or the version
   }
   if (*run_command) return run(arguments);
   if (*check_command) return check(arguments);
@@ -157,6 +175,9 @@ int main(int argc, char** argv) {
   } catch (const sluice::PhysicsError& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return sluice::exit_code::bad_physics;
+  } catch (const fs::filesystem_error& error) {
+    fmt::print(stderr, "error: {}: {}\n", error.path1().string(), error.code().message());
+    return sluice::exit_code::run_failed;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "error: not enough memory\n");
     return sluice::exit_code::run_failed;

@@ -29,7 +29,6 @@ class Consistency {
     const Node* const bodies = case_.source.find("bodies");
     for (std::size_t i = 0; i < case_.bodies.size(); ++i) check_body(case_.bodies[i], bodies->items[i]);
     check_observations();
-    check_picture_times();
   }
 
  private:
@@ -191,7 +190,7 @@ class Consistency {
     }
   }
 
-  // ---- observations, output ----
+  // ---- observations ----
 
   void check_observations() {
     for (ObservationCase& observation : case_.observe) {
@@ -212,14 +211,6 @@ class Consistency {
     // A unit vector stays as it is to the last bit, so that a resolved case reads back as the same case.
     if (std::abs(length - 1) > 1e-14)
       for (double& d : observation.direction) d /= length;
-  }
-
-  void check_picture_times() {
-    const Node* const output = case_.source.find("output");
-    for (const double time : case_.output.picture_times)
-      if (case_.end_time > 0 && time > case_.end_time)
-        problems_.add(place_of(*output, "picture_times"),
-                      fmt::format("picture_times: {:g} s is after the end_time, {:g} s", time, case_.end_time));
   }
 
   Case& case_;

@@ -26,6 +26,10 @@ std::string innermost_error() {
     return 0;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep, &text);
+  // An error of the system comes with time, descriptor and buffer; its message says enough.
+  const std::string mark = "error message = '";
+  if (const auto at = text.find(mark); at != std::string::npos)
+    text = text.substr(at + mark.size(), text.find('\'', at + mark.size()) - at - mark.size());
   return text;
 }
 
@@ -51,6 +55,8 @@ std::string up_to_null(const char* data, std::size_t size) { return {data, std::
 }  // namespace
 
 Hdf5File::Hdf5File(const std::filesystem::path& path, Mode mode) : name_(path.string()) {
+  // Every file is closed by its object. At exit HDF5 would try once more to write what a full disk refused, and crash.
+  [[maybe_unused]] static const herr_t once = H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown, not printed
   // The format of HDF5 1.10 carries checksums of its own for everything but the raw data.
   const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);

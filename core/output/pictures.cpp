@@ -5,8 +5,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
+
+#include "core/output/frame.h"
 
 namespace sluice {
 
@@ -38,6 +41,17 @@ std::vector<std::string> command_line(const PictureRequest& request) {
 }
 
 }  // namespace
+
+void require_pictured_fields(const Case& definition, const Particles& particles) {
+  std::vector<std::string> names;
+  for (const auto& field : result_fields(particles)) names.push_back(field.name);
+  for (std::size_t i = 0; i < definition.output.pictures.size(); ++i) {
+    const std::string& name = definition.output.pictures[i];
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw CaseError(definition.source.find("output")->find("pictures")->items.at(i).place,
+                    fmt::format("pictures: unknown field '{}'; {}", name, allowed_words(name, names)));
+  }
+}
 
 bool draw_pictures(const PictureRequest& request) {
   std::vector<std::string> words = command_line(request);

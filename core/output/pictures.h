@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/case/case.h"
+#include "core/particles/particles.h"
+
 namespace sluice {
 
 struct PictureRequest {
@@ -14,6 +17,9 @@ struct PictureRequest {
   bool animation = false;
   bool quiet = false;  ///< do not print the names of the pictures
 };
+
+/// Throws CaseError at the first word of output.pictures that is no field of the results.
+void require_pictured_fields(const Case& definition, const Particles& particles);
 
 /// Waits for the script to end; true if it succeeded. The script stands beside the program or in its share folder, and
 /// is run by $SLUICE_PYTHON, else by Debian's python3. Throws std::runtime_error if there is no script.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/output/observation.h"
+#include "core/output/pictures.h"
 #include "core/parallel/parallel.h"
 #include "core/simulation/progress.h"
 #include "core/simulation/simulation.h"
@@ -32,6 +33,8 @@ void print_prediction(const Case& definition) {
   const auto simulation = Simulation::create(definition);
   for (const auto& observation : definition.observe)
     make_observation(observation, simulation->particles(), definition.grid.cell);
+  require_pictured_fields(definition, simulation->particles());
+  simulation->require_time_step();
   const Particles& particles = simulation->particles();
   fmt::print("{}: {}\n", definition.file, definition.title);
   fmt::print("  physics         {}, {}-D, {}, {}, {}\n", definition.physics, definition.dimension(),

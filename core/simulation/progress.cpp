@@ -1,12 +1,31 @@
 #include "core/simulation/progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 namespace sluice {
+
+namespace {
+
+/// A line that is longer than the terminal is wide would not be redrawn but begun anew each time.
+std::size_t terminal_width() {
+  winsize size{};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80;
+}
+
+/// The leading parts of a line, between bars, that have room.
+std::string fitted(const std::string& line, std::size_t width) {
+  if (line.size() <= width) return line;
+  const auto bar = line.rfind(" | ", width);
+  return line.substr(0, bar == std::string::npos ? width : bar);
+}
+
+}  // namespace
 
 std::string duration_text(double seconds) {
   if (!std::isfinite(seconds)) return "?";
@@ -34,10 +53,10 @@ void Progress::show(const Simulation& simulation, const StepInfo& info) {
   const double done = simulation.time() - start_time_;
   const double left = done > 0 ? elapsed * (end_time_ - simulation.time()) / done : INFINITY;
   const std::string line =
-      fmt::format("{:8.3f} of {:g} s | step {} | dt {:.3g} s ({}) | fastest {:.3g} m/s | {} left", simulation.time(),
-                  end_time_, simulation.steps(), info.dt, info.limiter, info.speed, duration_text(left));
+      fmt::format("{:8.3f} of {:g} s | {} left | dt {:.3g} s ({}) | step {} | max {:.3g} m/s", simulation.time(),
+                  end_time_, duration_text(left), info.dt, info.limiter, simulation.steps(), info.speed);
   if (terminal_)
-    fmt::print("\r{}\x1b[K", line);
+    fmt::print("\r{}\x1b[K", fitted(line, terminal_width() - 1));
   else
     fmt::print("{}\n", line);
   line_open_ = terminal_;

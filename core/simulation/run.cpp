@@ -34,19 +34,27 @@ double seconds_since(SteadyClock::time_point start) {
   return std::chrono::duration<double>(SteadyClock::now() - start).count();
 }
 
-/// Creates the folder, or refuses to touch one that holds results.
-void prepare_folder(const RunOptions& options) {
+/// Refuses to touch a folder that holds results, before anything is computed. The folder is made when the case has
+/// proved sound.
+void check_folder(const RunOptions& options) {
   if (options.resume) {
     if (!fs::is_directory(options.folder))
       throw CaseError(fmt::format("--resume: there is no folder {}", options.folder.string()));
     return;
   }
-  if (fs::exists(options.folder) && !fs::is_empty(options.folder) && !options.force)
+  if (fs::is_directory(options.folder) && !fs::is_empty(options.folder) && !options.force)
     throw CaseError(
         fmt::format("the output folder {} is not empty; take another --output, continue it with --resume, or "
                     "overwrite it with --force",
                     options.folder.string()));
-  fs::create_directories(options.folder);
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw std::runtime_error(fmt::format("the output folder {} cannot be made: {}", folder.string(),
+                                         error ? error.message() : "there is a file of this name"));
 }
 
 std::string text_of(const std::string& file) {
@@ -76,10 +84,14 @@ class Run {
         options_(options),
         simulation_(Simulation::create(definition)),
         checkpoints_(options.folder) {
-    if (options.resume)
-      resume();
-    else
-      checkpoints_.clear();
+    if (options.resume) resume();
+    for (const auto& o : case_.observe)
+      observations_.push_back(make_observation(o, simulation_->particles(), case_.grid.cell));
+    require_pictured_fields(case_, simulation_->particles());
+    simulation_->require_time_step();
+    // From here on the folder changes; what the user did wrong has been found by now.
+    make_folder(options_.folder);
+    if (!options.resume) clear_folder();
     open_outputs();
   }
 
@@ -107,11 +119,11 @@ class Run {
       }
     } catch (const PhysicsError&) {
       progress.end_line();
-      summarise("physics_failed");
+      summarise_failure("physics_failed");
       throw;
     } catch (const std::runtime_error&) {
       progress.end_line();
-      summarise("run_failed");
+      summarise_failure("run_failed");
       throw;
     }
     progress.end_line();
@@ -124,13 +136,20 @@ class Run {
   }
 
  private:
+  /// Takes away what would tell of an earlier run if this one were killed.
+  void clear_folder() {
+    checkpoints_.clear();
+    fs::remove(options_.folder / "summary.json");
+    fs::remove_all(options_.folder / "pictures");
+  }
+
   void resume() {
     const Checkpoint checkpoint = checkpoints_.load_latest();
     for (const auto& warning : checkpoint.warnings) fmt::print(stderr, "warning: {}\n", warning);
     if (checkpoint.archive.texts.at("case") != identity())
       throw CaseError(
           fmt::format("--resume: the run in {} is of another case: what stands in the case file (or --set) has "
-                      "changed, apart from end_time and output",
+                      "changed, apart from end_time, output, outflow and the time step",
                       options_.folder.string()));
     simulation_->restore(checkpoint.archive);
     earlier_seconds_ = checkpoint.archive.reals.at("wall_seconds").at(0);
@@ -140,12 +159,19 @@ class Run {
                  checkpoint.file.string());
   }
 
-  /// What must not change between the parts of a run: everything but when it ends and what it writes.
+  /// What must not change between the parts of a run: everything but when it ends, what it writes, and the remedies
+  /// that the messages of a failed run propose.
   std::string identity() const {
     Case same = case_;
     same.end_time = 1;
     same.output = {};
     same.observe.clear();
+    same.outflow = {};
+    const SchemeCase usual;
+    same.scheme.fixed_time_step = usual.fixed_time_step;
+    same.scheme.courant = usual.courant;
+    same.scheme.advection = usual.advection;
+    same.scheme.strain_per_step = usual.strain_per_step;
     return resolved_yaml(same, simulation_->resolved_sections());
   }
 
@@ -159,8 +185,6 @@ class Run {
     provenance.grid = case_.grid;
     std::ofstream(options_.folder / "case.resolved.yaml") << provenance.resolved_case;
 
-    for (const auto& o : case_.observe)
-      observations_.push_back(make_observation(o, simulation_->particles(), case_.grid.cell));
     std::vector<std::string> history = {"step", "time_s", "dt_s", "limiter", "max_speed_m_s"};
     for (const auto& energy : simulation_->energies()) history.push_back(energy.first + "_energy_J");
     std::vector<std::string> observed = {"step", "time_s"};
@@ -218,9 +242,18 @@ class Run {
     progress.end_line();
     checkpoint();
     summarise("interrupted");
-    fmt::print(stderr, "interrupted at time {:g} s; continue with --resume --output {}\n", simulation_->time(),
-               options_.folder.string());
+    fmt::print(stderr, "interrupted at time {:g} s; the same command with --resume continues the run in {}\n",
+               simulation_->time(), options_.folder.string());
     return exit_code::interrupted;
+  }
+
+  /// What went wrong matters more than a summary that cannot be written.
+  void summarise_failure(const std::string& reason) {
+    try {
+      summarise(reason);
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "warning: {}\n", error.what());
+    }
   }
 
   void summarise(const std::string& reason) {
@@ -282,7 +315,7 @@ class Run {
 }  // namespace
 
 int run_case(const Case& definition, const RunOptions& options) {
-  prepare_folder(options);
+  check_folder(options);
   watch_for_interruption();
   return Run(definition, options).execute();
 }

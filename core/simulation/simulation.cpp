@@ -43,6 +43,8 @@ class SimulationOf final : public Simulation {
     return {dt.seconds, dt.name, largest_speed()};
   }
 
+  void require_time_step() const override { choose_time_step(*module_, scene_, definition_.end_time); }
+
   std::vector<std::pair<std::string, double>> time_step_limits() const override {
     std::vector<std::pair<std::string, double>> limits;
     for (const auto& limit : module_->time_step_limits(scene_)) limits.emplace_back(limit.name, limit.seconds);
@@ -81,7 +83,7 @@ class SimulationOf final : public Simulation {
     scene_.travelled = loop[2];
     scene_.motion.largest_speed_squared = loop[3];
     scene_.motion.largest_strain_rate = loop[4];
-    longest_dt_ = loop[5];
+    longest_dt_ = loop.at(5);
     module_->restore(archive);
   }
 

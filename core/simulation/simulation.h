@@ -38,6 +38,9 @@ class Simulation {
     while (time() < until) advance(until);
   }
 
+  /// Throws CaseError if the case fixes a step that is longer than a limit now.
+  virtual void require_time_step() const = 0;
+
   /// What the next step would be, and all limits on it [s], for `sluice check`.
   virtual std::vector<std::pair<std::string, double>> time_step_limits() const = 0;
   virtual std::vector<std::pair<std::string, double>> energies() const = 0;  ///< [J] (2-D: J/m)

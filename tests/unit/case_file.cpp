@@ -175,8 +175,6 @@ TEST(CaseFile, WrongValues) {
             "c.yaml:8:10: outflow: found 'delete'; allowed: error, remove, clamp");
   EXPECT_EQ(message_with_more("gravity: [0, 0, -9.81 m/s2]\n"),
             "c.yaml:8:10: gravity: found 3 components; the grid has 2 dimensions");
-  EXPECT_EQ(message_with_more("output: {picture_times: [3 s]}\n"),
-            "c.yaml:8:25: picture_times: 3 s is after the end_time, 2 s");
   EXPECT_EQ(message_with_more("observe: {a: {measure: front, direction: [0, 0]}}\n"),
             "c.yaml:8:42: direction: all components are 0");
 }
