@@ -65,9 +65,11 @@ class Team {
     chunk_.store(static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / (threads * 16))),
                  std::memory_order_relaxed);
     undone_.store(static_cast<std::uint32_t>(items), std::memory_order_relaxed);
+    // `next` before `end`: a member that is late from the last call must not find room in a share whose number is still
+    // old.
     for (std::uint64_t t = 0; t < threads; ++t) {
-      shares_[t].end.store(static_cast<std::uint32_t>(items * (t + 1) / threads), std::memory_order_relaxed);
       shares_[t].next.store(call << 32 | items * t / threads, std::memory_order_release);
+      shares_[t].end.store(static_cast<std::uint32_t>(items * (t + 1) / threads), std::memory_order_release);
     }
     announce();
     work(static_cast<std::uint32_t>(call), 0);
@@ -97,7 +99,7 @@ class Team {
       for (;;) {
         const std::uint32_t begin = static_cast<std::uint32_t>(next);
         const std::uint32_t chunk = chunk_.load(std::memory_order_relaxed),
-                            last = share.end.load(std::memory_order_relaxed);
+                            last = share.end.load(std::memory_order_acquire);
         if (next >> 32 != call || begin >= last) break;
         const std::uint32_t end = std::min(begin + chunk, last);
         // If this succeeds the call is not over, and body_, chunk_ and end are those of the call.
