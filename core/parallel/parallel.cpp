@@ -62,7 +62,7 @@ class Team {
     assert(count < (std::size_t{1} << 31));
     const std::uint64_t threads = shares_.size(), items = count, call = calls_.load(std::memory_order_relaxed) + 1;
     body_ = body;
-    chunk_.store(static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / (threads * 16))),
+    chunk_.store(static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / (threads * 64))),
                  std::memory_order_relaxed);
     undone_.store(static_cast<std::uint32_t>(items), std::memory_order_relaxed);
     // `next` before `end`: a member that is late from the last call must not find room in a share whose number is still

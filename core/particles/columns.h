@@ -65,7 +65,10 @@ class Columns {
 
  private:
   struct Free {
+    Free() : Free(0) {}
+    explicit Free(std::size_t doubles) : offset(doubles) {}
     void operator()(double* p) const;
+    std::size_t offset;  ///< doubles from the beginning of the allocation
   };
   using Array = std::unique_ptr<double[], Free>;
   static Array allocate(std::size_t count);
