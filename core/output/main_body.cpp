@@ -12,8 +12,9 @@ namespace sluice {
 
 namespace {
 
-/// A cell as one number: 21 bits an axis, so that a neighbour is a sum away.
-using CellKey = std::int64_t;
+/// A cell as one number: 21 bits an axis, so that a neighbour is a sum away. Unsigned, so that a particle that was
+/// thrown beyond a million cells wraps around.
+using CellKey = std::uint64_t;
 constexpr CellKey axis_step(std::size_t axis) { return CellKey{1} << (21 * axis); }
 
 /// Occupied cells, numbered in the order in which particles meet them. Open addressing: a third of the time of
@@ -72,14 +73,15 @@ class Components {
 };
 
 void join_neighbours(const OccupiedCells& cells, int dimension, Components& components) {
-  const CellKey reach = dimension == 3 ? 1 : 0;
+  const std::int64_t reach = dimension == 3 ? 1 : 0;
   for (std::uint32_t c = 0; c < cells.cells().size(); ++c)
-    for (CellKey k = -reach; k <= 0; ++k)
-      for (CellKey j = -1; j <= 1; ++j)
-        for (CellKey i = -1; i <= 1; ++i) {
-          const CellKey shift = i + j * axis_step(1) + k * axis_step(2);
+    for (std::int64_t k = -reach; k <= 0; ++k)
+      for (std::int64_t j = -1; j <= 1; ++j)
+        for (std::int64_t i = -1; i <= 1; ++i) {
+          const std::int64_t shift =
+              i + j * static_cast<std::int64_t>(axis_step(1)) + k * static_cast<std::int64_t>(axis_step(2));
           if (shift >= 0) continue;  // the other half joins from the other side
-          const std::uint32_t other = cells.find(cells.cells()[c] + shift);
+          const std::uint32_t other = cells.find(cells.cells()[c] + static_cast<CellKey>(shift));
           if (other != OccupiedCells::none) components.join(c, other);
         }
 }
@@ -95,11 +97,11 @@ std::vector<std::uint8_t> main_body(const Particles& particles, ColumnId place, 
   std::array<const double*, 3> x{};
   for (std::size_t k = 0; k < dimension; ++k) x[k] = particles.columns.data(place, static_cast<int>(k));
   constexpr CellKey middle = axis_step(1) / 2;  // indices may be negative
-  CellKey last = -1;
+  CellKey last = ~CellKey{0};
   for (std::size_t i = 0; i < size; ++i) {
     CellKey at = 0;
     for (std::size_t k = 0; k < dimension; ++k)
-      at += (static_cast<CellKey>(std::floor(x[k][i] / cell[k])) + middle) * axis_step(k);
+      at += (static_cast<CellKey>(static_cast<std::int64_t>(std::floor(x[k][i] / cell[k]))) + middle) * axis_step(k);
     // Neighbours in memory are neighbours in space: mostly the cell is the one of the particle before.
     cell_of[i] = at == last ? cell_of[i - 1] : cells.find_or_add(at);
     last = at;
