@@ -35,7 +35,7 @@ class PhysicsModule {
   virtual ~PhysicsModule() = default;
 
   /// The columns that it reads and writes, beside those that every scene has.
-  virtual void declare(Columns& particles) = 0;
+  virtual void declare(Particles& particles) = 0;
   /// Density [kg/m3] of the material with this index of Case::materials: sets the masses.
   virtual double density(int material) const = 0;
   /// Called once, when all particles are in place: initial stress and the like.

@@ -18,7 +18,7 @@ class SimulationOf final : public Simulation {
       : definition_(definition),
         scene_(definition),
         module_(physics_registry<Dim>().find(definition.physics, definition.source.place)(definition)) {
-    module_->declare(scene_.particles.columns);
+    module_->declare(scene_.particles);
     fill_bodies<Dim>(
         definition, scene_.grid, [&](int m) { return module_->density(m); }, scene_.particles);
     module_->initialise(scene_);

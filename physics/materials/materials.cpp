@@ -119,7 +119,7 @@ SLUICE_MULTITARGET bool all_finite(std::size_t n, const std::array<double*, Comp
 }  // namespace stress_update
 
 template <int Dim>
-StressReport Materials<Dim>::update_stress(Particles& particles, const Blocks<Dim>& blocks,
+StressReport Materials<Dim>::update_stress(Particles& particles, ColumnId inertia, const Blocks<Dim>& blocks,
                                            const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain) const {
   Columns& columns = particles.columns;
   StressReport report;
@@ -143,7 +143,7 @@ StressReport Materials<Dim>::update_stress(Particles& particles, const Blocks<Di
     stress_update::rotate(n, material_batch.stress, rotation);
     materials_[m]->update(material_batch);
     const auto& e = material_batch.strain_increment;
-    const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(particles.mass) + batch.begin,
+    const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(inertia) + batch.begin,
                                                      columns.data(particles.volume) + batch.begin);
     const double modulus = materials_[m]->elasticity().constrained_modulus();
     report.fastest_wave = std::max(report.fastest_wave, std::sqrt(modulus * volume.largest_specific_volume));
@@ -166,9 +166,9 @@ double Materials<Dim>::stored_energy(const Particles& particles) const {
 }
 
 template <int Dim>
-double Materials<Dim>::fastest_wave(const Particles& particles) const {
+double Materials<Dim>::fastest_wave(const Particles& particles, ColumnId inertia) const {
   const double* volume = particles.columns.data(particles.volume);
-  const double* mass = particles.columns.data(particles.mass);
+  const double* mass = particles.columns.data(inertia);
   double fastest = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const double modulus =
