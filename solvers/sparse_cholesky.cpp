@@ -6,28 +6,15 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <new>
 #include <utility>
 
+#include "solvers/stopwatch.h"
+
 namespace sluice {
 namespace {
-
-/// Adds the time between its construction and its end to `total` [s].
-class Stopwatch {
- public:
-  explicit Stopwatch(double& total) : total_(total) {}
-  ~Stopwatch() { total_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  using Clock = std::chrono::steady_clock;
-  double& total_;
-  Clock::time_point start_ = Clock::now();
-};
 
 /// OpenBLAS has one number of threads for the whole program: sets it, and restores it at its end.
 class BlasThreads {
@@ -41,32 +28,43 @@ class BlasThreads {
   int previous_;
 };
 
-/// CHOLMOD's view of the lower triangle of `matrix`, with no copy. CHOLMOD does not write to it.
-cholmod_sparse view_lower(const SparseCholesky::Matrix& matrix) {
+/// CHOLMOD's view of a matrix of which it reads the lower triangle, with no copy. CHOLMOD does not write to it.
+cholmod_sparse view_lower(const SymmetricPattern& pattern, const double* values) {
   cholmod_sparse view{};
-  view.nrow = static_cast<std::size_t>(matrix.rows());
-  view.ncol = static_cast<std::size_t>(matrix.cols());
-  view.nzmax = static_cast<std::size_t>(matrix.nonZeros());
-  view.p = const_cast<int*>(matrix.outerIndexPtr());
-  view.i = const_cast<int*>(matrix.innerIndexPtr());
-  view.x = const_cast<double*>(matrix.valuePtr());
+  view.nrow = view.ncol = static_cast<std::size_t>(pattern.size());
+  view.nzmax = pattern.row.size();
+  view.p = const_cast<int*>(pattern.column_begin.data());
+  view.i = const_cast<int*>(pattern.row.data());
+  view.x = const_cast<double*>(values);
   view.stype = -1;
   view.itype = CHOLMOD_INT;
-  view.xtype = CHOLMOD_REAL;
+  view.xtype = values != nullptr ? CHOLMOD_REAL : CHOLMOD_PATTERN;
   view.dtype = CHOLMOD_DOUBLE;
   view.sorted = 1;
   view.packed = 1;
   return view;
 }
 
-cholmod_dense view_column(const Eigen::VectorXd& vector) {
+cholmod_dense view_column(std::span<const double> vector) {
   cholmod_dense view{};
-  view.nrow = view.nzmax = view.d = static_cast<std::size_t>(vector.size());
+  view.nrow = view.nzmax = view.d = vector.size();
   view.ncol = 1;
   view.x = const_cast<double*>(vector.data());
   view.xtype = CHOLMOD_REAL;
   view.dtype = CHOLMOD_DOUBLE;
   return view;
+}
+
+std::vector<double> matrix_diagonal(const SymmetricPattern& pattern, std::span<const double> values) {
+  std::vector<double> diagonal(static_cast<std::size_t>(pattern.size()), 0.0);
+  for (int column = 0; column < pattern.size(); ++column) {
+    const auto c = static_cast<std::size_t>(column);
+    const auto begin = pattern.row.begin() + pattern.column_begin[c],
+               end = pattern.row.begin() + pattern.column_begin[c + 1];
+    const auto entry = std::lower_bound(begin, end, column);
+    if (entry != end && *entry == column) diagonal[c] = values[static_cast<std::size_t>(entry - pattern.row.begin())];
+  }
+  return diagonal;
 }
 
 void require_success(const cholmod_common& common, const char* action) {
@@ -119,22 +117,29 @@ struct SparseCholesky::Factor {
   struct Free {
     cholmod_common* common;
     void operator()(cholmod_factor* factor) const { cholmod_free_factor(&factor, common); }
-    void operator()(cholmod_dense* vector) const { cholmod_free_dense(&vector, common); }
   };
 
   Factor();
   void choose_ordering(const SparseCholeskyOptions& options);
   bool has_pattern(const Matrix& matrix) const;
-  void keep_pattern(const Matrix& matrix);
   /// Unknown that is eliminated at `position`.
   int unknown(std::size_t position) const { return static_cast<const int*>(lower->Perm)[position]; }
-  void require_positive_pivots(const Matrix& matrix) const;
+  void require_positive_pivots(std::span<const double> values) const;
+  ~Factor();
 
   std::unique_ptr<cholmod_common, Finish> common;
   std::unique_ptr<cholmod_factor, Free> lower;  // declared after `common`, which it needs to be freed
-  std::vector<int> outer, inner;                // pattern of the analysed matrix
+  SymmetricPattern pattern;                     // of the analysed matrix
   bool factorized = false;
+  // Solution and work space of `solve`, allocated by CHOLMOD at the first and kept.
+  cholmod_dense* solution = nullptr;
+  cholmod_dense* permuted = nullptr;
+  cholmod_dense* work = nullptr;
 };
+
+SparseCholesky::Factor::~Factor() {
+  for (cholmod_dense* vector : {solution, permuted, work}) cholmod_free_dense(&vector, common.get());
+}
 
 SparseCholesky::Factor::Factor() : common(new cholmod_common), lower(nullptr, Free{common.get()}) {
   cholmod_start(common.get());
@@ -146,40 +151,37 @@ SparseCholesky::Factor::Factor() : common(new cholmod_common), lower(nullptr, Fr
 void SparseCholesky::Factor::choose_ordering(const SparseCholeskyOptions& options) {
   if (options.ordering == Ordering::automatic) return;
   common->nmethods = 1;
-  common->method[0].ordering = options.ordering == Ordering::nested_dissection ? CHOLMOD_METIS
-                               : options.ordering == Ordering::natural         ? CHOLMOD_NATURAL
-                                                                               : CHOLMOD_GIVEN;
+  common->method[0].ordering = options.ordering == Ordering::minimum_degree      ? CHOLMOD_AMD
+                               : options.ordering == Ordering::nested_dissection ? CHOLMOD_METIS
+                               : options.ordering == Ordering::natural           ? CHOLMOD_NATURAL
+                                                                                 : CHOLMOD_GIVEN;
 }
 
 bool SparseCholesky::Factor::has_pattern(const Matrix& matrix) const {
   const auto columns = static_cast<std::size_t>(matrix.cols()), entries = static_cast<std::size_t>(matrix.nonZeros());
-  return lower && outer.size() == columns + 1 && inner.size() == entries &&
-         std::equal(outer.begin(), outer.end(), matrix.outerIndexPtr()) &&
-         std::equal(inner.begin(), inner.end(), matrix.innerIndexPtr());
-}
-
-void SparseCholesky::Factor::keep_pattern(const Matrix& matrix) {
-  outer.assign(matrix.outerIndexPtr(), matrix.outerIndexPtr() + matrix.cols() + 1);
-  inner.assign(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros());
+  return lower && pattern.column_begin.size() == columns + 1 && pattern.row.size() == entries &&
+         std::equal(pattern.column_begin.begin(), pattern.column_begin.end(), matrix.outerIndexPtr()) &&
+         std::equal(pattern.row.begin(), pattern.row.end(), matrix.innerIndexPtr());
 }
 
 /// A singular matrix often passes the factorization with a pivot that is nothing but round-off. A pivot is the diagonal
 /// entry less a sum of squares, whose round-off is at most n epsilon times that entry (N. J. Higham, Accuracy and
 /// Stability of Numerical Algorithms, 2nd ed. 2002, theorem 10.3): a pivot below it says nothing. The converse fails:
 /// with coefficients of very different size a singular matrix can still pass.
-void SparseCholesky::Factor::require_positive_pivots(const Matrix& matrix) const {
-  const Eigen::VectorXd diagonal = matrix.diagonal();
+void SparseCholesky::Factor::require_positive_pivots(std::span<const double> values) const {
+  const std::vector<double> diagonal = matrix_diagonal(pattern, values);
+  const auto at = [&](int column) { return diagonal[static_cast<std::size_t>(column)]; };
   if (common->status == CHOLMOD_NOT_POSDEF) {
     const int column = unknown(lower->minor);
-    throw_not_positive_definite(column, diagonal[column], "the pivot is not positive");
+    throw_not_positive_definite(column, at(column), "the pivot is not positive");
   }
   const std::vector<double> factor = factor_diagonal(*lower);
   const double round_off = std::numeric_limits<double>::epsilon() * static_cast<double>(diagonal.size());
   for (std::size_t position = 0; position < factor.size(); ++position) {
     const int column = unknown(position);
     const double pivot = factor[position] * factor[position];
-    if (!(pivot > round_off * diagonal[column]) || !std::isfinite(pivot))
-      throw_not_positive_definite(column, diagonal[column], fmt::format("the pivot {:g} is round-off", pivot));
+    if (!(pivot > round_off * at(column)) || !std::isfinite(pivot))
+      throw_not_positive_definite(column, at(column), fmt::format("the pivot {:g} is round-off", pivot));
   }
 }
 
@@ -196,16 +198,23 @@ SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 bool SparseCholesky::analyze(const Matrix& matrix) {
   assert(matrix.rows() == matrix.cols() && matrix.rows() > 0 && matrix.isCompressed());
   if (factor_->has_pattern(matrix)) return false;
+  return analyze({.column_begin = {matrix.outerIndexPtr(), matrix.outerIndexPtr() + matrix.cols() + 1},
+                  .row = {matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros()}});
+}
+
+bool SparseCholesky::analyze(SymmetricPattern pattern) {
+  assert(pattern.size() > 0 && pattern.row.size() == static_cast<std::size_t>(pattern.column_begin.back()));
+  if (factor_->lower && factor_->pattern == pattern) return false;
   const Stopwatch stopwatch(statistics_.analyze_seconds);
   const bool given = options_.ordering == Ordering::given;
-  assert(!given || options_.permutation.size() == static_cast<std::size_t>(matrix.rows()));
+  assert(!given || options_.permutation.size() == static_cast<std::size_t>(pattern.size()));
 
   cholmod_common* common = factor_->common.get();
-  cholmod_sparse view = view_lower(matrix);
+  factor_->pattern = std::move(pattern);
+  cholmod_sparse view = view_lower(factor_->pattern, nullptr);
   factor_->factorized = false;
   factor_->lower.reset(cholmod_analyze_p(&view, given ? options_.permutation.data() : nullptr, nullptr, 0, common));
   require_success(*common, "analyse");
-  factor_->keep_pattern(matrix);
   ++statistics_.analyses;
   statistics_.factor_nonzeros = static_cast<std::int64_t>(common->lnz);
   statistics_.flops = common->fl;
@@ -215,29 +224,46 @@ bool SparseCholesky::analyze(const Matrix& matrix) {
 
 void SparseCholesky::factorize(const Matrix& matrix) {
   analyze(matrix);
+  factorize(std::span(matrix.valuePtr(), static_cast<std::size_t>(matrix.nonZeros())));
+}
+
+void SparseCholesky::factorize(std::span<const double> values) {
+  assert(factor_->lower && values.size() == factor_->pattern.row.size());
   const Stopwatch stopwatch(statistics_.factorize_seconds);
   const BlasThreads threads(options_.blas_threads);
   cholmod_common* common = factor_->common.get();
-  cholmod_sparse view = view_lower(matrix);
+  cholmod_sparse view = view_lower(factor_->pattern, values.data());
   factor_->factorized = false;
   cholmod_factorize(&view, factor_->lower.get(), common);
   require_success(*common, "factorize");
   ++statistics_.factorizations;
-  factor_->require_positive_pivots(matrix);
+  factor_->require_positive_pivots(values);
   factor_->factorized = true;
 }
 
 Eigen::VectorXd SparseCholesky::solve(const Eigen::VectorXd& b) {
-  assert(factor_->factorized && b.size() == static_cast<Eigen::Index>(factor_->lower->n));
+  Eigen::VectorXd x(b.size());
+  const auto size = static_cast<std::size_t>(b.size());
+  solve(std::span(b.data(), size), std::span(x.data(), size));
+  return x;
+}
+
+void SparseCholesky::solve(std::span<const double> b, std::span<double> x) {
+  assert(factor_->factorized && b.size() == factor_->lower->n && x.size() == b.size());
   const Stopwatch stopwatch(statistics_.solve_seconds);
   const BlasThreads threads(options_.blas_threads);
-  cholmod_common* common = factor_->common.get();
   cholmod_dense view = view_column(b);
-  const std::unique_ptr<cholmod_dense, Factor::Free> x(cholmod_solve(CHOLMOD_A, factor_->lower.get(), &view, common),
-                                                       Factor::Free{common});
-  require_success(*common, "solve with");
+  cholmod_solve2(CHOLMOD_A, factor_->lower.get(), &view, nullptr, &factor_->solution, nullptr, &factor_->permuted,
+                 &factor_->work, factor_->common.get());
+  require_success(*factor_->common, "solve with");
   ++statistics_.solves;
-  return Eigen::Map<const Eigen::VectorXd>(static_cast<const double*>(x->x), b.size());
+  std::copy_n(static_cast<const double*>(factor_->solution->x), x.size(), x.begin());
+}
+
+const SymmetricPattern& SparseCholesky::pattern() const { return factor_->pattern; }
+
+std::span<const int> SparseCholesky::elimination_order() const {
+  return {static_cast<const int*>(factor_->lower->Perm), factor_->lower->n};
 }
 
 }  // namespace sluice

@@ -15,6 +15,7 @@
 #include <Eigen/SparseCore>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -33,9 +34,19 @@ class NotPositiveDefinite : public std::runtime_error {
   int column_;
 };
 
+/// Pattern of a symmetric matrix: its lower triangle, every diagonal entry included, in compressed columns with rows
+/// ascending. The values of a matrix of this pattern are an array of numbers, one for each entry of `row`.
+struct SymmetricPattern {
+  std::vector<int> column_begin;  ///< where each column begins in `row`; one more entry holds the end of the last
+  std::vector<int> row;
+  int size() const { return column_begin.empty() ? 0 : static_cast<int>(column_begin.size()) - 1; }
+  bool operator==(const SymmetricPattern&) const = default;
+};
+
 /// The order in which unknowns are eliminated; it decides how many entries the factor has.
 enum class Ordering {
   automatic,          ///< approximate minimum degree; METIS too where the factor comes out very dense. Quick to find.
+  minimum_degree,     ///< approximate minimum degree (AMD), whatever the factor becomes
   nested_dissection,  ///< METIS: slower to find; less work where n is large, above all in 3-D
   natural,            ///< the unknowns as they are numbered
   given               ///< `SparseCholeskyOptions::permutation`, for example dissection of a grid by its indices
@@ -74,13 +85,23 @@ class SparseCholesky {
   /// Analyses the pattern of `matrix` unless it is that of the previous call; true if it did. The matrix is square,
   /// compressed, and either full or its lower triangle; the strict upper triangle is not read.
   bool analyze(const Matrix& matrix);
+  bool analyze(SymmetricPattern pattern);
 
   /// Factorizes, after `analyze` where that is needed. Throws NotPositiveDefinite; then the analysis stays valid, and
   /// `solve` is not allowed until a factorization succeeds.
   void factorize(const Matrix& matrix);
+  /// The same for the values of the analysed pattern, in its order.
+  void factorize(std::span<const double> values);
 
   /// The solution of A x = b with the last factorized A; b has as many rows as A.
   Eigen::VectorXd solve(const Eigen::VectorXd& b);
+  /// The same without allocating memory; x may be b.
+  void solve(std::span<const double> b, std::span<double> x);
+
+  /// What was analysed last. For an Eigen matrix that was full, both triangles.
+  const SymmetricPattern& pattern() const;
+  /// The order of elimination of the last analysis: unknown `elimination_order()[k]` is eliminated k-th.
+  std::span<const int> elimination_order() const;
 
   const SparseCholeskyStatistics& statistics() const { return statistics_; }
 

@@ -1,0 +1,333 @@
+#include "solvers/lagged_cholesky.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "solvers/stopwatch.h"
+
+namespace sluice {
+namespace {
+
+using Options = LaggedCholeskyOptions;
+
+/// Operations of different kinds in one unit, nanoseconds of one core of the machine that docs/design.md names. They
+/// only weigh one kind against another; no result depends on them but by the choice when to factorize.
+RenewalRule::Costs counted_costs(const SparseCholeskyStatistics& factor, std::size_t matrix_nonzeros) {
+  const double entries = static_cast<double>(factor.factor_nonzeros), nonzeros = static_cast<double>(matrix_nonzeros);
+  const double flop = factor.supernodal ? 0.1 : 0.5;
+  return {.renewal = flop * factor.flops + 5 * entries + 30 * nonzeros, .iteration = 2 * entries + 3 * nonzeros};
+}
+
+/// A number of solves to weigh against one factorization when orderings are compared.
+constexpr int typical_solves = 10;
+
+/// y = A x.
+void multiply(const SymmetricPattern& pattern, std::span<const double> values, std::span<const double> x,
+              std::span<double> y) {
+  const int* const row = pattern.row.data();
+  const double* const value = values.data();
+  std::fill(y.begin(), y.end(), 0.0);
+  for (std::size_t column = 0; column < x.size(); ++column) {
+    const int begin = pattern.column_begin[column], end = pattern.column_begin[column + 1];
+    const double x_column = x[column];
+    double sum = value[begin] * x_column;
+    for (int k = begin + 1; k < end; ++k) {
+      const auto i = static_cast<std::size_t>(row[k]);
+      sum += value[k] * x[i];
+      y[i] += value[k] * x_column;
+    }
+    y[column] += sum;
+  }
+}
+
+/// Four sums instead of one, which the processor can form side by side; the order is fixed, and so are the bits.
+double dot(std::span<const double> a, std::span<const double> b) {
+  std::array<double, 4> sum{};
+  const std::size_t blocks = a.size() / 4 * 4;
+  for (std::size_t i = 0; i < blocks; i += 4)
+    for (std::size_t lane = 0; lane < 4; ++lane) sum[lane] += a[i + lane] * b[i + lane];
+  for (std::size_t i = blocks; i < a.size(); ++i) sum[i - blocks] += a[i] * b[i];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+sluice::Ordering ordering_of_cholesky(Options::Ordering ordering) {
+  return ordering == Options::Ordering::given               ? sluice::Ordering::given
+         : ordering == Options::Ordering::nested_dissection ? sluice::Ordering::nested_dissection
+                                                            : sluice::Ordering::minimum_degree;
+}
+
+std::string name_of(Options::Ordering ordering) {
+  return ordering == Options::Ordering::given               ? "given"
+         : ordering == Options::Ordering::nested_dissection ? "nested dissection"
+                                                            : "minimum degree";
+}
+
+}  // namespace
+
+LaggedCholesky::LaggedCholesky(LaggedCholeskyOptions options) : options_(options), ordering_(options.ordering) {
+  assert(options_.relative_tolerance > 0 && options_.most_iterations >= 1);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Analysis
+// ---------------------------------------------------------------------------------------------------------------------
+
+void LaggedCholesky::analyze(SymmetricPattern pattern, std::vector<int> elimination_order) {
+  assert(elimination_order.empty() || elimination_order.size() == static_cast<std::size_t>(pattern.size()));
+  if (statistics_.analyses > 0 && pattern == cholesky_.pattern() && elimination_order == elimination_order_) return;
+  const Stopwatch stopwatch(statistics_.analyze_seconds);
+  elimination_order_ = std::move(elimination_order);
+  ++statistics_.analyses;
+  if (ordering_ != Options::Ordering::measured || pattern.size() == 0) {
+    use(ordering_, analysed(ordering_, pattern));
+    return;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto ordering :
+       {Options::Ordering::given, Options::Ordering::minimum_degree, Options::Ordering::nested_dissection}) {
+    if (ordering == Options::Ordering::given && elimination_order_.empty()) continue;
+    SparseCholesky candidate = analysed(ordering, pattern);
+    const double work = measure(candidate);
+    if (work < least) {
+      least = work;
+      use(ordering, std::move(candidate));
+    }
+  }
+}
+
+SparseCholesky LaggedCholesky::analysed(Options::Ordering ordering, const SymmetricPattern& pattern) const {
+  const bool given = ordering == Options::Ordering::given && !elimination_order_.empty();
+  SparseCholesky cholesky({.ordering = given ? sluice::Ordering::given : ordering_of_cholesky(ordering),
+                           .permutation = given ? elimination_order_ : std::vector<int>(),
+                           .blas_threads = options_.blas_threads});
+  if (pattern.size() > 0) cholesky.analyze(pattern);
+  return cholesky;
+}
+
+/// The work of a factorization and some solves, counted or measured.
+double LaggedCholesky::measure(SparseCholesky& candidate) const {
+  const SymmetricPattern& pattern = candidate.pattern();
+  if (options_.choice != Options::Choice::measured) {
+    const RenewalRule::Costs costs = counted_costs(candidate.statistics(), pattern.row.size());
+    return costs.renewal + typical_solves * costs.iteration;
+  }
+  // Times do not depend on the values: any positive definite matrix will do, here a diagonally dominant one.
+  std::vector<double> values(pattern.row.size(), -1.0), x(static_cast<std::size_t>(pattern.size()), 1.0);
+  std::vector<double> neighbours(x.size(), 0.0);
+  for (const int row : pattern.row) neighbours[static_cast<std::size_t>(row)] += 1;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    values[static_cast<std::size_t>(pattern.column_begin[i])] =
+        neighbours[i] + pattern.column_begin[i + 1] - pattern.column_begin[i];
+  candidate.factorize(values);
+  candidate.solve(x, x);
+  return candidate.statistics().factorize_seconds + typical_solves * candidate.statistics().solve_seconds;
+}
+
+void LaggedCholesky::use(Options::Ordering ordering, SparseCholesky cholesky) {
+  cholesky_ = std::move(cholesky);
+  ordering_ = ordering;
+  factorized_values_.clear();
+  const SymmetricPattern& pattern = cholesky_.pattern();
+  rule_ = RenewalRule(counted_costs(cholesky_.statistics(), pattern.row.size()));
+  for (auto* vector : {&inverse_diagonal_, &r_, &z_, &p_, &q_})
+    vector->resize(static_cast<std::size_t>(pattern.size()));
+  statistics_.unknowns = pattern.size();
+  statistics_.matrix_nonzeros = static_cast<std::int64_t>(pattern.row.size());
+  statistics_.factor_nonzeros = cholesky_.statistics().factor_nonzeros;
+  statistics_.ordering =
+      name_of(ordering == Options::Ordering::given && elimination_order_.empty() ? Options::Ordering::minimum_degree
+                                                                                 : ordering);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Norms
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// False if an entry of the diagonal is not positive: such a matrix is not positive definite.
+bool LaggedCholesky::invert_diagonal(std::span<const double> values) {
+  const std::vector<int>& column_begin = cholesky_.pattern().column_begin;
+  bool positive = true;
+  for (std::size_t i = 0; i < inverse_diagonal_.size(); ++i) {
+    const double diagonal = values[static_cast<std::size_t>(column_begin[i])];
+    positive = positive && diagonal > 0;
+    inverse_diagonal_[i] = 1 / diagonal;
+  }
+  return positive;
+}
+
+LaggedCholesky::Norms LaggedCholesky::norms(std::span<const double> r) const {
+  std::array<double, 4> plain{}, scaled{}, largest{};
+  const auto add = [&](std::size_t i, std::size_t lane) {
+    const double square = r[i] * r[i];
+    plain[lane] += square;
+    scaled[lane] += square * inverse_diagonal_[i];
+    largest[lane] = std::max(largest[lane], std::abs(r[i]));
+  };
+  const std::size_t blocks = r.size() / 4 * 4;
+  for (std::size_t i = 0; i < blocks; i += 4)
+    for (std::size_t lane = 0; lane < 4; ++lane) add(i + lane, lane);
+  for (std::size_t i = blocks; i < r.size(); ++i) add(i, i - blocks);
+  const auto sum = [](const std::array<double, 4>& s) { return (s[0] + s[1]) + (s[2] + s[3]); };
+  return {std::sqrt(sum(plain)), std::sqrt(sum(scaled)), *std::max_element(largest.begin(), largest.end())};
+}
+
+double LaggedCholesky::distance() const {
+  const Norms now = norms(r_);
+  return std::max({now.plain / allowed_.plain, now.scaled / allowed_.scaled, now.largest / allowed_.largest});
+}
+
+/// r = b - A x; returns the distance.
+double LaggedCholesky::update_residual(std::span<const double> values, std::span<const double> b,
+                                       std::span<const double> x) {
+  multiply(cholesky_.pattern(), values, x, r_);
+  for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = b[i] - r_[i];
+  return distance();
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Solution
+// ---------------------------------------------------------------------------------------------------------------------
+
+LaggedCholesky::Report LaggedCholesky::solve(std::span<const double> values, std::span<const double> b,
+                                             std::span<double> x, double largest_residual) {
+  assert(values.size() == cholesky_.pattern().row.size() && b.size() == r_.size() && x.size() == r_.size());
+  double seconds = 0;
+  const double factorize_before = statistics_.factorize_seconds;
+  Report report;
+  {
+    const Stopwatch stopwatch(seconds);
+    report = solve_within(values, b, x, largest_residual);
+  }
+  statistics_.solve_seconds += seconds - (statistics_.factorize_seconds - factorize_before);
+  statistics_.iterations += report.iterations;
+  ++statistics_.solves;
+  return report;
+}
+
+LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> values, std::span<const double> b,
+                                                    std::span<double> x, double largest_residual) {
+  if (!invert_diagonal(values)) factorize(values);  // which throws, and says why
+  const Norms size = norms(b);
+  if (size.plain == 0) {
+    std::fill(x.begin(), x.end(), 0.0);
+    return {};
+  }
+  const double tolerance = options_.relative_tolerance;
+  allowed_ = {.plain = tolerance * size.plain, .scaled = tolerance * size.scaled, .largest = largest_residual};
+  Report report;
+  double distance = start(values, b, x);
+  if (!(distance <= 1) || options_.choice == Options::Choice::direct) {
+    bool renew = factorized_values_.empty() || rule_.renew();
+    if (!renew) {
+      const Outcome outcome = iterate(values, b, x, distance, false, report.iterations);
+      renew = outcome != Outcome::converged;
+      if (!renew) rule_.aged(report.iterations);
+    }
+    if (renew) {
+      const int before = report.iterations;
+      factorize(values);
+      report.factorized = true;
+      if (before > 0) distance = start(values, b, x);
+      report.converged = iterate(values, b, x, distance, true, report.iterations) == Outcome::converged;
+      rule_.renewed(before, report.iterations - before);
+    }
+  } else if (!factorized_values_.empty()) {
+    rule_.aged(0);
+  }
+  const Norms last = norms(r_);
+  report.residual = last.plain / size.plain;
+  report.largest_residual = last.largest;
+  return report;
+}
+
+/// Sets the residual of the guess, or of zero where that is a better guess; returns the distance.
+double LaggedCholesky::start(std::span<const double> values, std::span<const double> b, std::span<double> x) {
+  const double distance = update_residual(values, b, x);
+  if (dot(r_, r_) <= dot(b, b)) return distance;
+  std::fill(x.begin(), x.end(), 0.0);
+  std::copy(b.begin(), b.end(), r_.begin());
+  return this->distance();
+}
+
+void LaggedCholesky::factorize(std::span<const double> values) {
+  double seconds = 0;
+  factorized_values_.clear();  // no factor, should the matrix be refused
+  {
+    const Stopwatch stopwatch(seconds);
+    cholesky_.factorize(values);
+  }
+  statistics_.factorize_seconds += seconds;
+  ++statistics_.factorizations;
+  if (options_.choice != Options::Choice::direct) factorized_values_.assign(values.begin(), values.end());
+  if (options_.choice == Options::Choice::measured) {
+    RenewalRule::Costs costs = rule_.costs();
+    costs.renewal += (1e9 * seconds - costs.renewal) / 2;
+    rule_.set_costs(costs);
+  }
+}
+
+/// Preconditioned conjugate gradients from the residual r_ of x, which is `distance` from the goal; adds to
+/// `iterations`. With a fresh factor this is iterative refinement, and goes on until round-off stops it; with a lagged
+/// one, until that is expected to be dearer than a factorization.
+LaggedCholesky::Outcome LaggedCholesky::iterate(std::span<const double> values, std::span<const double> b,
+                                                std::span<double> x, double distance, bool fresh, int& iterations) {
+  constexpr int most_refinements = 10;
+  const double first = distance;
+  double true_distance = distance, last_rho = 0;
+  for (int i = 1; i <= (fresh ? most_refinements : options_.most_iterations); ++i) {
+    cholesky_.solve(r_, z_);
+    const double rho = dot(r_, z_), beta = last_rho > 0 ? rho / last_rho : 0;
+    for (std::size_t k = 0; k < p_.size(); ++k) p_[k] = z_[k] + beta * p_[k];
+    multiply(cholesky_.pattern(), values, p_, q_);
+    const double curvature = dot(p_, q_);
+    if (!(rho > 0 && curvature > 0)) break;  // not positive definite, or at the end of what numbers resolve
+    ++iterations;
+    const double alpha = rho / curvature;
+    for (std::size_t k = 0; k < r_.size(); ++k) {
+      x[k] += alpha * p_[k];
+      r_[k] -= alpha * q_[k];
+    }
+    last_rho = rho;
+    distance = this->distance();
+    if (distance <= 1) {
+      // The residual carried along drifts away from b - A x by round-off.
+      distance = update_residual(values, b, x);
+      if (distance <= 1) return Outcome::converged;
+      if (!(distance < true_distance / 2)) return Outcome::given_up;
+      true_distance = distance, last_rho = 0;
+    } else if (!fresh && rule_.give_up(i, first, distance)) {
+      return Outcome::given_up;
+    }
+  }
+  return update_residual(values, b, x) <= 1 ? Outcome::converged : Outcome::given_up;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Checkpoints
+// ---------------------------------------------------------------------------------------------------------------------
+
+LaggedCholesky::State LaggedCholesky::state() const {
+  State state{.factorized_values = factorized_values_, .counters = {static_cast<double>(ordering_)}};
+  const RenewalRule::Counters counters = rule_.counters();
+  state.counters.insert(state.counters.end(), counters.begin(), counters.end());
+  return state;
+}
+
+void LaggedCholesky::restore(const State& state) {
+  RenewalRule::Counters counters{};
+  assert(state.counters.size() == counters.size() + 1 && statistics_.analyses > 0);
+  const auto ordering = static_cast<Options::Ordering>(static_cast<int>(state.counters[0]));
+  if (ordering != ordering_) {
+    const Stopwatch stopwatch(statistics_.analyze_seconds);
+    use(ordering, analysed(ordering, cholesky_.pattern()));
+  }
+  if (!state.factorized_values.empty()) factorize(state.factorized_values);
+  std::copy(state.counters.begin() + 1, state.counters.end(), counters.begin());
+  rule_.restore(counters);
+}
+
+}  // namespace sluice
