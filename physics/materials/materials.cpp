@@ -120,14 +120,15 @@ SLUICE_MULTITARGET bool all_finite(std::size_t n, const std::array<double*, Comp
 
 template <int Dim>
 StressReport Materials<Dim>::update_stress(Particles& particles, ColumnId inertia, const Blocks<Dim>& blocks,
-                                           const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain) const {
+                                           const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain,
+                                           double dt) const {
   Columns& columns = particles.columns;
   StressReport report;
   for (std::uint32_t b = block.first_batch; b < block.last_batch; ++b) {
     const Batch& batch = blocks.batches()[b];
     const std::size_t n = batch.end - batch.begin, offset = batch.begin - block.begin;
     const auto m = static_cast<std::size_t>(batch.material);
-    MaterialBatch<Dim> material_batch{n, {}, {}, {}};
+    MaterialBatch<Dim> material_batch{n, dt, {}, {}, {}};
     std::array<const double*, spin_components<Dim>> rotation;
     for (std::size_t c = 0; c < rotation.size(); ++c) rotation[c] = strain.rotation[c] + offset;
     for (int c = 0; c < symmetric_components<Dim>; ++c) {

@@ -77,10 +77,10 @@ void StressUpdate<Dim>::gather_motion_and_update(Scene<Dim>& scene, double dt) {
       if (f_bar_) cells_.locate(scene.view(block));
       scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
       motion_[b] = scene.shape->gather_motion(scene.view(block), work.motion_tile.data(), own);
-      if (!f_bar_) stress_[b] = update_block(scene, block, strain);
+      if (!f_bar_) stress_[b] = update_block(scene, block, strain, dt);
     });
   }
-  if (f_bar_) apply_f_bar(scene, {});
+  if (f_bar_) apply_f_bar(scene, dt, {});
 }
 
 template <int Dim>
@@ -107,16 +107,16 @@ void StressUpdate<Dim>::update(Scene<Dim>& scene, double dt, const AfterBlock& a
         cells_.locate(scene.view(block));
         return;
       }
-      stress_[b] = update_block(scene, block, strain);
+      stress_[b] = update_block(scene, block, strain, dt);
       if (after_block) after_block(b, block);
     });
   }
-  if (f_bar_) apply_f_bar(scene, after_block);
+  if (f_bar_) apply_f_bar(scene, dt, after_block);
 }
 
 /// F-bar on cells, eq. (26): the volumetric strain increment of each particle gives way to the mean of its cell.
 template <int Dim>
-void StressUpdate<Dim>::apply_f_bar(Scene<Dim>& scene, const AfterBlock& after_block) {
+void StressUpdate<Dim>::apply_f_bar(Scene<Dim>& scene, double dt, const AfterBlock& after_block) {
   const auto timing = scene.clock.time(Stage::stress);
   const double* volume = scene.particles.columns.data(scene.particles.volume);
   for_each_block(scene, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
@@ -129,15 +129,15 @@ void StressUpdate<Dim>::apply_f_bar(Scene<Dim>& scene, const AfterBlock& after_b
     double* const mean = work.numbers.data();
     cells_.mean(scene.blocks, b, scene.view(block), mean);
     set_volumetric_strain(mean, block.end - block.begin, strain);
-    stress_[b] = update_block(scene, block, strain);
+    stress_[b] = update_block(scene, block, strain, dt);
     if (after_block) after_block(b, block);
   });
 }
 
 template <int Dim>
 StressReport StressUpdate<Dim>::update_block(Scene<Dim>& scene, const ParticleBlock<Dim>& block,
-                                             const StrainIncrements<Dim>& strain) {
-  return materials_.update_stress(scene.particles, inertia_, scene.blocks, block, strain);
+                                             const StrainIncrements<Dim>& strain, double dt) {
+  return materials_.update_stress(scene.particles, inertia_, scene.blocks, block, strain, dt);
 }
 
 /// The strain columns, from particle `first` on.

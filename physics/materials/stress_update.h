@@ -55,8 +55,9 @@ class StressUpdate {
 
  private:
   void gather_motion(Scene<Dim>& scene, double dt, ColumnId positions);
-  void apply_f_bar(Scene<Dim>& scene, const AfterBlock& after_block);
-  StressReport update_block(Scene<Dim>& scene, const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain);
+  void apply_f_bar(Scene<Dim>& scene, double dt, const AfterBlock& after_block);
+  StressReport update_block(Scene<Dim>& scene, const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain,
+                            double dt);
   StrainIncrements<Dim> kept_strain(Scene<Dim>& scene, std::uint32_t first);
 
   Materials<Dim> materials_;

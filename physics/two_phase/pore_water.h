@@ -1,0 +1,86 @@
+/// PoreWater: the water that particles hold, and what they tell the nodes, cells and vertices of it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/simulation/stages.h"
+#include "physics/initial_stress/initial_stress.h"
+#include "physics/loads/external_pressure.h"
+#include "physics/materials/materials.h"
+#include "physics/two_phase/pressure_equation.h"
+#include "physics/two_phase/water.h"
+
+namespace sluice {
+
+/// Permeabilities are given for this gravity, whatever the gravity of the case is (a centrifuge) [m/s2].
+inline constexpr double standard_gravity = 9.81;
+
+template <int Dim>
+class PoreWater {
+ public:
+  PoreWater(const WaterCase& water, std::vector<PoreSpace> spaces, const Materials<Dim>& materials);
+
+  void declare(Particles& particles, bool with_body_force);
+  /// Sets porosity, masses and which particles hold water, from the table and the materials.
+  void fill(Scene<Dim>& scene);
+
+  /// The pore pressure at the start, where it needs no solution.
+  void set_initial_pressure(Scene<Dim>& scene);
+
+  /// What pore pressure and outside pressure do to the skeleton.
+  SkeletonLoads<Dim> skeleton_loads(Scene<Dim>& scene, const ExternalPressure<Dim>& outside);
+
+  const std::vector<PoreSpace>& spaces() const { return spaces_; }
+  ColumnId inertia() const { return inertia_; }
+  ColumnId pressure() const { return pressure_; }
+  ColumnId pressure_gradient() const { return pressure_gradient_; }
+  ColumnId porosity() const { return porosity_; }
+  ColumnId wet() const { return wet_; }
+  bool any_liquid() const;
+
+  /// Which blocks hold water.
+  std::vector<char> wet_blocks(const Scene<Dim>& scene) const;
+
+  /// Forces on the nodes from the total stress sigma' - beta p, from outside pressure and its gradient.
+  void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double increment,
+                      const ExternalPressure<Dim>& outside);
+
+  /// Particles of a block to its cells and vertices: eqs. (43)-(47). The nodes have the velocities of the predictor.
+  /// `relative` holds the velocities of the water relative to the solid, or nulls where it has no inertia of its own.
+  void collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work, double kick,
+               const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
+
+  /// The new pressure from the vertices, and the forces of what it adds to the old one.
+  void correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
+               double increment, const PressureEquation<Dim>& equation);
+  /// Pressure and its gradient at the particles, without forces: at the start.
+  void take_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
+                     const PressureEquation<Dim>& equation);
+
+  /// Porosity and masses from the volumes, eq. (50).
+  void follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& block);
+
+  /// Energy stored in the compressed water, and its volume [J], [m3].
+  double compression_energy(const Particles& particles) const;
+  double water_volume(const Particles& particles) const;
+
+  /// k / gamma_w along each axis [m2/(Pa s)] of a material at a porosity.
+  std::array<double, Dim> mobility(const PoreSpace& space, double porosity) const;
+
+ private:
+  void zero_forces(const Scene<Dim>& scene, Lane* tile) const;
+  template <class Visit>
+  void for_wet(const Scene<Dim>& scene, const ParticleBlock<Dim>& block, const Visit& visit) const;
+
+  const WaterCase& water_;
+  std::vector<PoreSpace> spaces_;
+  const Materials<Dim>& materials_;
+  std::unique_ptr<ShapeKernels<Dim>> linear_;
+
+  ColumnId pressure_, pressure_gradient_, porosity_, solid_mass_, inertia_, wet_;         // state
+  ColumnId wet_volume_, divergence_, acceleration_, new_pressure_, total_stress_, zero_;  // derived
+  ColumnId body_force_;
+};
+
+}  // namespace sluice
