@@ -130,6 +130,7 @@ class Consistency {
   void check_changes() {
     std::vector<std::string> names;
     for (const auto& [name, section] : case_.materials) names.push_back(name);
+    if (case_.changes.size() > 64) problems_.add(case_.changes[64].place, "changes: at most 64 are possible");
     for (const ChangeCase& change : case_.changes)
       for (const std::string& name : {change.material, change.becomes})
         if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())

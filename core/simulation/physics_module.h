@@ -55,8 +55,11 @@ class PhysicsModule {
   /// Energies by name [J], for history.csv.
   virtual std::vector<std::pair<std::string, double>> energies(const Scene<Dim>& scene) const = 0;
 
-  /// Further numbers of the last step by name, for history.csv and summary.json: iterations of a solver and the like.
-  virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
+  /// Further numbers of the last step by name, for history.csv: iterations of a solver and the like. The same names in
+  /// every step, the same numbers in every run of a case.
+  virtual std::vector<std::pair<std::string, double>> step_numbers() const { return {}; }
+  /// Further numbers of the whole run so far, for summary.json; may hold times.
+  virtual std::vector<std::pair<std::string, double>> totals() const { return {}; }
 
   /// Sections that the module reads, with all defaults filled in, by name; for case.resolved.yaml.
   virtual std::vector<std::pair<std::string, Node>> resolved_sections() const = 0;

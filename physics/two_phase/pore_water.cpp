@@ -305,6 +305,30 @@ void PoreWater<Dim>::follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& 
 }
 
 template <int Dim>
+void PoreWater<Dim>::compress(Scene<Dim>& scene, const ParticleBlock<Dim>& block, const double* solid,
+                              const double* relative, double dt) {
+  Columns& columns = scene.particles.columns;
+  double* pressure = columns.data(pressure_);
+  const double* porosity = columns.data(porosity_);
+  const double* wet = columns.data(wet_);
+  const double stiffness = 1 / water_.compressibility();
+  for (std::uint32_t p = block.begin; p < block.end; ++p)
+    if (wet[p] != 0) pressure[p] -= dt * stiffness / porosity[p] * (solid[p] + porosity[p] * relative[p]);
+}
+
+template <int Dim>
+double PoreWater<Dim>::fastest_sound(const Particles& particles) const {
+  const Columns& columns = particles.columns;
+  double fastest = 0;
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    double modulus = materials_[static_cast<std::size_t>(particles.material[p])].elasticity().constrained_modulus();
+    if (columns.data(wet_)[p] != 0) modulus += 1 / (water_.compressibility() * columns.data(porosity_)[p]);
+    fastest = std::max(fastest, modulus * columns.data(particles.volume)[p] / columns.data(particles.mass)[p]);
+  }
+  return std::sqrt(fastest);
+}
+
+template <int Dim>
 double PoreWater<Dim>::compression_energy(const Particles& particles) const {
   const double compressibility = water_.compressibility();
   const Columns& columns = particles.columns;

@@ -35,6 +35,8 @@ class PoreWater {
   ColumnId inertia() const { return inertia_; }
   ColumnId pressure() const { return pressure_; }
   ColumnId pressure_gradient() const { return pressure_gradient_; }
+  ColumnId divergence() const { return divergence_; }
+  ColumnId acceleration() const { return acceleration_; }
   ColumnId porosity() const { return porosity_; }
   ColumnId wet() const { return wet_; }
   bool any_liquid() const;
@@ -58,8 +60,15 @@ class PoreWater {
   void take_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
                      const PressureEquation<Dim>& equation);
 
+  /// p -= dt (div v + n div r) K_w / n, eq. (55); `divergence` of v and r by particle [1/s].
+  void compress(Scene<Dim>& scene, const ParticleBlock<Dim>& block, const double* solid, const double* relative,
+                double dt);
+
   /// Porosity and masses from the volumes, eq. (50).
   void follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& block);
+
+  /// Largest speed of sound in soil whose water moves with it, sqrt((M + K_w / n) / rho) [m/s].
+  double fastest_sound(const Particles& particles) const;
 
   /// Energy stored in the compressed water, and its volume [J], [m3].
   double compression_energy(const Particles& particles) const;

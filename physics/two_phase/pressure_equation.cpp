@@ -361,7 +361,7 @@ template <int Dim>
 void PressureEquation<Dim>::solve_system(double dt) {
   const double largest = volume_tolerance * geometry_.cell_volume() / dt;
   try {
-    solver_.solve(values_, right_side_, pressure_, largest);
+    report_ = solver_.solve(values_, right_side_, pressure_, largest);
   } catch (const NotPositiveDefinite& error) {
     explain(error);
   }

@@ -68,9 +68,8 @@ class PressureEquation {
   /// Fills a tile of motion lanes with the pressure.
   void load(std::size_t block, Lane* tile) const;
 
-  /// Water that left through faces and surfaces in the last step, by volume [m3].
-  double outflow() const { return outflow_; }
-
+  /// Of the last step.
+  const LaggedCholesky::Report& report() const { return report_; }
   const LaggedCholeskyStatistics& statistics() const { return solver_.statistics(); }
   std::size_t unknowns() const { return grid_.vertices().size(); }
 
@@ -140,7 +139,7 @@ class PressureEquation {
   std::vector<double> given_;           // by vertex [Pa]
   std::vector<double> old_, pressure_;  // by vertex [Pa]
   std::vector<double> values_, right_side_;
-  double outflow_ = 0;
+  LaggedCholesky::Report report_;
 };
 
 extern template class PressureEquation<2>;

@@ -41,8 +41,11 @@ struct Motion {
 }  // namespace
 
 template <int Dim>
-RelativeMotion<Dim>::RelativeMotion(const Case& definition, const WaterCase& water, const PoreWater<Dim>& pores)
-    : water_(water), pores_(pores), active_(water.formulation != Formulation::u_p) {
+RelativeMotion<Dim>::RelativeMotion(const Case& definition, const WaterCase& water, PoreWater<Dim>& pores)
+    : water_(water),
+      pores_(pores),
+      active_(water.formulation != Formulation::u_p),
+      projected_(water.formulation == Formulation::v_w_p) {
   for (const PoreSpace& space : pores.spaces())
     if (active_ && !space.permeability.empty() &&
         std::ranges::adjacent_find(space.permeability, std::not_equal_to()) != space.permeability.end())
@@ -66,6 +69,10 @@ void RelativeMotion<Dim>::declare(Particles& particles, bool affine) {
   drive_ =
       columns.declare({"drag_velocity", "m/s", Dim, Role::derived, "Velocity at which drag balances drive.", false});
   scratch_ = columns.declare({"unused_position", "m", Dim, Role::derived, "Where the water would go.", false});
+  if (projected_) return;
+  partial_stress_ = columns.declare({"water_stress", "Pa", 1, Role::derived, "Minus porosity times pressure.", false});
+  relative_divergence_ =
+      columns.declare({"relative_divergence", "1/s", 1, Role::derived, "Divergence of the relative velocity.", false});
 }
 
 template <int Dim>
@@ -108,7 +115,7 @@ void RelativeMotion<Dim>::scatter(Scene<Dim>& scene) {
 }
 
 template <int Dim>
-void RelativeMotion<Dim>::add_to_mixture(Scene<Dim>& scene) {
+void RelativeMotion<Dim>::collect(Scene<Dim>& scene) {
   const auto timing = scene.clock.time(Stage::nodes);
   parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) { nodes_.collect_momentum(scene.blocks, b); });
   for_all_nodes<Dim>(scene, [&](std::size_t b, std::size_t n) {
@@ -117,6 +124,7 @@ void RelativeMotion<Dim>::add_to_mixture(Scene<Dim>& scene) {
     Lane& before = before_[b * block_nodes<Dim> + n];
     before = water[0] > 0 ? water / water[0] : Lane{};
     before[0] = share;
+    if (!projected_) return;
     const Motion<Dim> motion(scene.nodes.motion(b) + n * motion_lanes<Dim>);
     for (int a = 0; a < Dim; ++a) motion.velocity[a] += share * before[1 + a];
   });
@@ -145,22 +153,47 @@ void RelativeMotion<Dim>::set_drag(Scene<Dim>& scene, const ParticleBlock<Dim>& 
   }
 }
 
+/// With the projection the drive comes from the gradient of the pressure; explicitly, from the divergence of the
+/// water's share of the stress, -n p.
+template <int Dim>
+void RelativeMotion<Dim>::scatter_drag(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block) {
+  Columns& columns = scene.particles.columns;
+  set_drag(scene, block);
+  ScatterInput<Dim> in = scene.scatter_input(block);
+  in.mass = columns.data(drag_);
+  in.affine.fill(nullptr);
+  for (int a = 0; a < Dim; ++a) in.velocity[a] = columns.data(drive_, a);
+  if (projected_) {
+    scene.shape->scatter(ScatterWhat::momentum, in, 0, nodes_.momentum_tile(b), nullptr);
+    return;
+  }
+  double* stress = columns.data(partial_stress_);
+  const double* wet = columns.data(pores_.wet());
+  for (std::uint32_t p = block.begin; p < block.end; ++p) {
+    stress[p] = -wet[p] * columns.data(pores_.porosity())[p] * columns.data(pores_.pressure())[p];
+    for (int a = 0; a < Dim; ++a) columns.data(drive_, a)[p] = 0;
+  }
+  in.stress.fill(columns.data(drive_));
+  for (int a = 0; a < Dim; ++a) in.stress[a] = stress;
+  scene.shape->scatter(ScatterWhat::momentum_and_force, in, 0, nodes_.momentum_tile(b), nodes_.force_tile(b));
+}
+
 template <int Dim>
 void RelativeMotion<Dim>::advance(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double kick) {
-  for_each_block(scene, workspaces, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>&) {
-    set_drag(scene, block);
-    ScatterInput<Dim> in = scene.scatter_input(block);
-    in.mass = scene.particles.columns.data(drag_);
-    for (int a = 0; a < Dim; ++a) in.velocity[a] = scene.particles.columns.data(drive_, a);
-    in.affine.fill(nullptr);
-    scene.shape->scatter(ScatterWhat::momentum, in, 0, nodes_.momentum_tile(b), nullptr);
-  });
+  for_each_block(scene, workspaces,
+                 [&](std::size_t b, const auto& block, Workspace<Dim>&) { scatter_drag(scene, b, block); });
   const auto timing = scene.clock.time(Stage::nodes);
   parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) {
     nodes_.collect_momentum(scene.blocks, b);
+    if (!projected_) nodes_.collect_force(scene.blocks, b);
     for (std::size_t n = 0; n < block_nodes<Dim>; ++n) {
-      const Lane before = before_[b * block_nodes<Dim> + n], drag = nodes_.momentum(b)[n];
+      const Lane before = before_[b * block_nodes<Dim> + n];
+      Lane drag = nodes_.momentum(b)[n];
       const double share = before[0], water = share * scene.nodes.momentum(b)[n][0], reduced = water * (1 - share);
+      if (!projected_) {
+        drag += nodes_.force(b)[n];
+        for (int a = 0; a < Dim; ++a) drag[1 + a] += water * scene.gravity[a];
+      }
       const Motion<Dim> solid(scene.nodes.motion(b) + n * motion_lanes<Dim>);
       const Motion<Dim> relative(nodes_.motion(b) + n * motion_lanes<Dim>);
       for (int a = 0; a < Dim; ++a) {
@@ -181,6 +214,22 @@ void RelativeMotion<Dim>::advance(Scene<Dim>& scene, std::vector<Workspace<Dim>>
       }
     }
     scene.faces.fix(scene.blocks.node_blocks()[b], scene.nodes.motion(b));
+  });
+}
+
+template <int Dim>
+void RelativeMotion<Dim>::compress(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt) {
+  Columns& columns = scene.particles.columns;
+  double* solid = columns.data(pores_.divergence());
+  double* relative = columns.data(relative_divergence_);
+  std::array<double*, Dim> unused;
+  for (int a = 0; a < Dim; ++a) unused[a] = columns.data(pores_.acceleration(), a);
+  for_each_block(scene, workspaces, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
+    nodes_.load_motion(scene.blocks, b, work.motion_tile.data());
+    scene.shape->gather_divergence(scene.view(block), work.motion_tile.data(), relative, unused);
+    scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
+    scene.shape->gather_divergence(scene.view(block), work.motion_tile.data(), solid, unused);
+    pores_.compress(scene, block, solid, relative, dt);
   });
 }
 

@@ -58,15 +58,32 @@ void TwoPhase<Dim>::initialise(Scene<Dim>& scene) {
 
 template <int Dim>
 void TwoPhase<Dim>::step(Scene<Dim>& scene, double dt) {
-  const double kick = scene.kick(dt);
   if (activate_blocks(scene) || !placed_) pressure_.prepare(scene, pores_.wet_blocks(scene));
   placed_ = true;
   stress_.begin_step(scene);
+  if (water_.formulation == Formulation::explicit_)
+    step_explicit(scene, dt);
+  else
+    step_projected(scene, dt);
+  stress_.end_step(scene);
+}
+
+template <int Dim>
+void TwoPhase<Dim>::step_projected(Scene<Dim>& scene, double dt) {
+  const double kick = scene.kick(dt);
   predict(scene, kick);
   project(scene, dt, kick);
   correct(scene, kick);
   gather(scene, dt);
-  stress_.end_step(scene);
+}
+
+/// Nothing is solved for: the pressure follows from how the water was compressed, and limits the step.
+template <int Dim>
+void TwoPhase<Dim>::step_explicit(Scene<Dim>& scene, double dt) {
+  predict(scene, scene.kick(dt));
+  relative_.advance(scene, stress_.workspaces(), scene.kick(dt));
+  relative_.compress(scene, stress_.workspaces(), dt);
+  gather(scene, dt);
 }
 
 /// Velocities of the nodes under gravity, effective stress and the old pressure, eq. (41).
@@ -88,7 +105,7 @@ void TwoPhase<Dim>::predict(Scene<Dim>& scene, double kick) {
   advance_nodes(scene, kick, !stress_first, true);
   if (!relative_.active()) return;
   relative_.scatter(scene);
-  relative_.add_to_mixture(scene);
+  relative_.collect(scene);
 }
 
 /// The pressure that balances the volumes of soil and water at the end of the step, eq. (46).
@@ -142,7 +159,10 @@ void TwoPhase<Dim>::gather(Scene<Dim>& scene, double dt) {
 /// Those of the skeleton, whose waves the pressure does not see; and for surfaces of water, that of a fall by a cell.
 template <int Dim>
 std::vector<TimeStepLimit> TwoPhase<Dim>::limits(const Scene<Dim>& scene, const SafetyFactors& factors) const {
-  std::vector<TimeStepLimit> all = explicit_limits(scene, stress_.fastest_wave(), factors);
+  const bool sound = water_.formulation == Formulation::explicit_;
+  const double fastest = sound ? pores_.fastest_sound(scene.particles) : stress_.fastest_wave();
+  std::vector<TimeStepLimit> all = explicit_limits(scene, fastest, factors);
+  if (sound) all.front().name = "sound";
   double g = 0;
   for (const double component : gravity_) g = std::hypot(g, component);
   if (pores_.any_liquid() && g > 0)
@@ -185,12 +205,23 @@ std::vector<std::pair<std::string, double>> TwoPhase<Dim>::energies(const Scene<
 }
 
 template <int Dim>
-std::vector<std::pair<std::string, double>> TwoPhase<Dim>::statistics() const {
+std::vector<std::pair<std::string, double>> TwoPhase<Dim>::step_numbers() const {
+  return {{"pressure_unknowns", static_cast<double>(pressure_.unknowns())},
+          {"pressure_iterations", pressure_.report().iterations},
+          {"pressure_factorized", pressure_.report().factorized ? 1 : 0}};
+}
+
+template <int Dim>
+std::vector<std::pair<std::string, double>> TwoPhase<Dim>::totals() const {
   const LaggedCholeskyStatistics& s = pressure_.statistics();
-  return {{"pressure_unknowns", static_cast<double>(s.unknowns)},
-          {"pressure_analyses", s.analyses},
+  return {{"pressure_analyses", s.analyses},
           {"pressure_factorizations", s.factorizations},
-          {"pressure_iterations", s.iterations}};
+          {"pressure_solves", s.solves},
+          {"pressure_iterations", s.iterations},
+          {"pressure_factor_nonzeros", static_cast<double>(s.factor_nonzeros)},
+          {"pressure_analyze_seconds", s.analyze_seconds},
+          {"pressure_factorize_seconds", s.factorize_seconds},
+          {"pressure_solve_seconds", s.solve_seconds}};
 }
 
 template <int Dim>

@@ -31,10 +31,13 @@ class TwoPhase final : public PhysicsModule<Dim> {
   void store(Archive& archive) const override;
   void restore(const Archive& archive) override;
   std::vector<std::pair<std::string, double>> energies(const Scene<Dim>& scene) const override;
-  std::vector<std::pair<std::string, double>> statistics() const override;
+  std::vector<std::pair<std::string, double>> step_numbers() const override;
+  std::vector<std::pair<std::string, double>> totals() const override;
   std::vector<std::pair<std::string, Node>> resolved_sections() const override;
 
  private:
+  void step_projected(Scene<Dim>& scene, double dt);
+  void step_explicit(Scene<Dim>& scene, double dt);
   void predict(Scene<Dim>& scene, double kick);
   void project(Scene<Dim>& scene, double dt, double kick);
   void correct(Scene<Dim>& scene, double kick);
