@@ -41,6 +41,9 @@ class PhysicsModule {
   /// Called once, when all particles are in place: initial stress and the like.
   virtual void initialise(Scene<Dim>& scene) = 0;
 
+  /// Called when particles have changed their material, before the step after that.
+  virtual void materials_changed(const Scene<Dim>& /*scene*/) {}
+
   /// All limits on the next step with a unit safety factor: a longer step is unstable or inaccurate beyond use.
   virtual std::vector<TimeStepLimit> hard_limits(const Scene<Dim>& scene) const = 0;
   /// All limits on the next step with the safety factors of the case.

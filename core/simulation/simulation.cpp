@@ -95,6 +95,7 @@ class SimulationOf final : public Simulation {
  private:
   /// Makes the changes of material that are due; returns the time of the next one, at most `until`.
   double change_materials(double until) {
+    bool any = false;
     for (std::size_t c = 0; c < definition_.changes.size(); ++c) {
       const ChangeCase& change = definition_.changes[c];
       if (change.at > scene_.time) {
@@ -109,7 +110,9 @@ class SimulationOf final : public Simulation {
       };
       std::ranges::replace(scene_.particles.material, number(change.material), number(change.becomes));
       scene_.blocks.clear();  // particles are sorted by material
+      any = true;
     }
+    if (any) module_->materials_changed(scene_);
     return until;
   }
 

@@ -19,6 +19,7 @@ class TotalStress final : public PhysicsModule<Dim> {
   void declare(Particles& particles) override;
   double density(int material) const override;
   void initialise(Scene<Dim>& scene) override;
+  void materials_changed(const Scene<Dim>& scene) override { stress_.initialise(scene); }
   std::vector<TimeStepLimit> hard_limits(const Scene<Dim>& scene) const override;
   std::vector<TimeStepLimit> time_step_limits(const Scene<Dim>& scene) const override;
   void step(Scene<Dim>& scene, double dt) override;
