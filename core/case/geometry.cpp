@@ -140,6 +140,15 @@ double Region::distance_to_surface(std::span<const double> x) const {
   return least;
 }
 
+double Region::distance_outside(std::span<const double> x) const {
+  double largest = 0;
+  for (const Primitive& part : parts)
+    largest = std::max(
+        largest,
+        std::visit([&](const auto& shape) { return sluice::contains(shape, x) ? 0.0 : distance(shape, x); }, part));
+  return largest;
+}
+
 std::array<std::vector<double>, 2> Region::bounds(int dimension) const {
   const auto n = static_cast<std::size_t>(dimension);
   Bounds all = everywhere(n);

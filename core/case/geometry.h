@@ -33,6 +33,9 @@ struct Region {
   bool contains(std::span<const double> x) const;
   /// Distance from x to the nearest surface of any part [m].
   double distance_to_surface(std::span<const double> x) const;
+  /// How far x lies outside: the largest distance to a part that does not hold it, 0 inside [m]. With several parts no
+  /// more than the distance to what they have in common.
+  double distance_outside(std::span<const double> x) const;
   /// Corners of the bounding box; infinite where the region is unbounded. `dimension` is 2 or 3.
   std::array<std::vector<double>, 2> bounds(int dimension) const;
 };

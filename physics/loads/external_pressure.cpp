@@ -12,7 +12,7 @@ namespace {
 template <int Dim>
 double share(const std::optional<Region>& region, double fade, const Vector<Dim>& x) {
   if (!region || region->contains(x)) return 1;
-  return fade > 0 ? std::max(0.0, 1 - region->distance_to_surface(x) / fade) : 0;
+  return fade > 0 ? std::max(0.0, 1 - region->distance_outside(x) / fade) : 0;
 }
 
 template <class T>

@@ -90,6 +90,9 @@ TEST(Geometry, RegionIsTheIntersectionOfItsParts) {
   EXPECT_FALSE(in(region, {1, 3.5}));
   EXPECT_FALSE(in(region, {1, 1}));
   EXPECT_TRUE(in(region, {0, 0}));
+  EXPECT_EQ(region.distance_outside(std::vector{-1.0, 0.5}), 1);  // the diagonal plane holds it
+  EXPECT_DOUBLE_EQ(region.distance_outside(std::vector{-1.0, 5.0}), std::sqrt(8));
+  EXPECT_EQ(region.distance_outside(std::vector{0.0, 0.0}), 0);
   const auto bounds = region.bounds(2);
   EXPECT_EQ(bounds[0], (std::vector<double>{0, 0}));
   EXPECT_EQ(bounds[1], (std::vector<double>{4, 3}));

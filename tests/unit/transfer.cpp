@@ -247,6 +247,98 @@ void expect_gather(Fixture<Dim>& f, bool affine, bool with_strain) {
   EXPECT_TRUE(report.finite);
 }
 
+// Forces of stress and of a force on each particle, which its nodes share as they share its mass.
+template <int Dim>
+void expect_body_force(const Fixture<Dim>& f) {
+  const auto size = static_cast<std::size_t>(f.tile_size());
+  Dense<Dim> dense(f, false);
+  ScatterInput<Dim> in = f.input(false);
+  for (int a = 0; a < Dim; ++a) in.body_force[a] = f.c[static_cast<std::size_t>(a)].data();
+  for (std::size_t p = 0; p < particles; ++p) {
+    const Stencil<Dim> s = f.shape.stencil(f.grid, f.at(p));
+    for (int n = 0; n < s.count; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      auto& force = dense.force[static_cast<std::size_t>(f.place_in_tile(s.node[i]))];
+      for (std::size_t a = 0; a < Dim; ++a) force[a + 1] += s.value[i] * f.c[a][p];
+    }
+  }
+  LaneBuffer tile(size);
+  tile.fill(size, 7);
+  f.shape.scatter(ScatterWhat::force, in, 0, nullptr, tile.lanes.data());
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t k = 0; k < Dim + 1; ++k) ASSERT_NEAR(tile.lanes.data()[i][k], dense.force[i][k], 1e-9);
+}
+
+/// A tile of motion lanes full of numbers, and what its nodes hold: component `a` of lane `lane`.
+template <int Dim>
+struct RandomMotion {
+  const Fixture<Dim>& fixture;
+  LaneBuffer tile;
+
+  explicit RandomMotion(const Fixture<Dim>& f)
+      : fixture(f), tile(static_cast<std::size_t>(f.tile_size() * motion_lanes<Dim>)) {
+    std::mt19937 generator(19);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < f.tile_size() * motion_lanes<Dim>; ++i)
+      for (int k = 0; k < 4; ++k) tile.lanes.data()[i][k] = normal(generator);
+  }
+  double at(const Index<Dim>& node, int lane, int a) const {
+    return tile.lanes.data()[fixture.place_in_tile(node) * motion_lanes<Dim> + lane][a];
+  }
+};
+
+template <int Dim>
+void expect_field(const Fixture<Dim>& f) {
+  const RandomMotion<Dim> field(f);
+  std::vector<double> value(particles, 7.0);
+  std::array<std::vector<double>, Dim> gradient;
+  FieldGather<Dim> out{value.data(), {}};
+  for (int a = 0; a < Dim; ++a) {
+    gradient[a].assign(particles, 7.0);
+    out.gradient[a] = gradient[a].data();
+  }
+  f.shape.gather_field(f.view(), field.tile.lanes.data(), out);
+  for (std::size_t p = 0; p < particles; ++p) {
+    const Stencil<Dim> s = f.shape.stencil(f.grid, f.at(p));
+    double sum = 0;
+    Vector<Dim> slope{};
+    for (int n = 0; n < s.count; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      sum += s.value[i] * field.at(s.node[i], 0, 0);
+      for (int a = 0; a < Dim; ++a) slope[a] += s.gradient[i][a] * field.at(s.node[i], 0, 0);
+    }
+    ASSERT_NEAR(value[p], sum, 1e-13) << "particle " << p;
+    for (int a = 0; a < Dim; ++a) ASSERT_NEAR(gradient[a][p], slope[a], 1e-13 / f.grid.cell[a]) << "particle " << p;
+  }
+}
+
+template <int Dim>
+void expect_divergence(const Fixture<Dim>& f) {
+  const RandomMotion<Dim> motion(f);
+  std::vector<double> divergence(particles, 7.0);
+  std::array<std::vector<double>, Dim> change;
+  std::array<double*, Dim> out;
+  for (int a = 0; a < Dim; ++a) {
+    change[a].assign(particles, 7.0);
+    out[a] = change[a].data();
+  }
+  f.shape.gather_divergence(f.view(), motion.tile.lanes.data(), divergence.data(), out);
+  for (std::size_t p = 0; p < particles; ++p) {
+    const Stencil<Dim> s = f.shape.stencil(f.grid, f.at(p));
+    double sum = 0;
+    Vector<Dim> dv{};
+    for (int n = 0; n < s.count; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      for (int a = 0; a < Dim; ++a) {
+        sum += s.gradient[i][a] * motion.at(s.node[i], 0, a);
+        dv[a] += s.value[i] * motion.at(s.node[i], motion_lanes<Dim> - 1, Dim == 2 ? 2 + a : a);
+      }
+    }
+    ASSERT_NEAR(divergence[p], sum, 1e-12 / f.grid.cell[0]) << "particle " << p;
+    for (int a = 0; a < Dim; ++a) ASSERT_NEAR(change[a][p], dv[a], 1e-13) << "particle " << p;
+  }
+}
+
 class Transfer : public ::testing::TestWithParam<std::string> {
  protected:
   template <int Dim, class Check>
@@ -275,6 +367,21 @@ TEST_P(Transfer, GatherEqualsTheSumsOverTheStencil) {
 TEST_P(Transfer, GatherWithoutStrainGivesTheSame) {
   for_each_place<2>([](auto& f, bool affine) { expect_gather<2>(f, affine, false); });
   for_each_place<3>([](auto& f, bool affine) { expect_gather<3>(f, affine, false); });
+}
+
+TEST_P(Transfer, BodyForceIsSharedLikeTheMass) {
+  for_each_place<2>([](auto& f, bool) { expect_body_force<2>(f); });
+  for_each_place<3>([](auto& f, bool) { expect_body_force<3>(f); });
+}
+
+TEST_P(Transfer, FieldEqualsTheSumsOverTheStencil) {
+  for_each_place<2>([](auto& f, bool) { expect_field<2>(f); });
+  for_each_place<3>([](auto& f, bool) { expect_field<3>(f); });
+}
+
+TEST_P(Transfer, DivergenceEqualsTheSumsOverTheStencil) {
+  for_each_place<2>([](auto& f, bool) { expect_divergence<2>(f); });
+  for_each_place<3>([](auto& f, bool) { expect_divergence<3>(f); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Registered, Transfer, ::testing::ValuesIn(shape_registry<2>().names()),
