@@ -13,19 +13,33 @@
 
 #include "solvers/stopwatch.h"
 
+// Of the OpenMP library inside CHOLMOD; declared here because omp.h of another compiler may belong to another library.
+extern "C" {
+int omp_get_max_active_levels();
+void omp_set_max_active_levels(int levels);
+}
+
 namespace sluice {
 namespace {
 
-/// OpenBLAS has one number of threads for the whole program: sets it, and restores it at its end.
-class BlasThreads {
+/// Threads of the libraries, until its end. OpenBLAS has one number of threads for the whole program. CHOLMOD opens an
+/// OpenMP region of four threads for every block of the factor: blocks are so small that it waits for threads most of
+/// the time, two to four times as long as one thread needs for the work. No level of active regions means one thread.
+class LibraryThreads {
  public:
-  explicit BlasThreads(int threads) : previous_(openblas_get_num_threads()) { openblas_set_num_threads(threads); }
-  ~BlasThreads() { openblas_set_num_threads(previous_); }
-  BlasThreads(const BlasThreads&) = delete;
-  BlasThreads& operator=(const BlasThreads&) = delete;
+  explicit LibraryThreads(int blas) : blas_(openblas_get_num_threads()), openmp_levels_(omp_get_max_active_levels()) {
+    openblas_set_num_threads(blas);
+    omp_set_max_active_levels(0);
+  }
+  ~LibraryThreads() {
+    openblas_set_num_threads(blas_);
+    omp_set_max_active_levels(openmp_levels_);
+  }
+  LibraryThreads(const LibraryThreads&) = delete;
+  LibraryThreads& operator=(const LibraryThreads&) = delete;
 
  private:
-  int previous_;
+  int blas_, openmp_levels_;
 };
 
 /// CHOLMOD's view of a matrix of which it reads the lower triangle, with no copy. CHOLMOD does not write to it.
@@ -230,7 +244,7 @@ void SparseCholesky::factorize(const Matrix& matrix) {
 void SparseCholesky::factorize(std::span<const double> values) {
   assert(factor_->lower && values.size() == factor_->pattern.row.size());
   const Stopwatch stopwatch(statistics_.factorize_seconds);
-  const BlasThreads threads(options_.blas_threads);
+  const LibraryThreads threads(options_.blas_threads);
   cholmod_common* common = factor_->common.get();
   cholmod_sparse view = view_lower(factor_->pattern, values.data());
   factor_->factorized = false;
@@ -251,7 +265,7 @@ Eigen::VectorXd SparseCholesky::solve(const Eigen::VectorXd& b) {
 void SparseCholesky::solve(std::span<const double> b, std::span<double> x) {
   assert(factor_->factorized && b.size() == factor_->lower->n && x.size() == b.size());
   const Stopwatch stopwatch(statistics_.solve_seconds);
-  const BlasThreads threads(options_.blas_threads);
+  const LibraryThreads threads(options_.blas_threads);
   cholmod_dense view = view_column(b);
   cholmod_solve2(CHOLMOD_A, factor_->lower.get(), &view, nullptr, &factor_->solution, nullptr, &factor_->permuted,
                  &factor_->work, factor_->common.get());
