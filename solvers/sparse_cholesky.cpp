@@ -88,22 +88,29 @@ void require_success(const cholmod_common& common, const char* action) {
                                          common.status == CHOLMOD_TOO_LARGE ? ", too large for int indices" : ""));
 }
 
+SparseCholesky::DenseBlocks view_blocks(const cholmod_factor& factor) {
+  const auto ints = [](void* begin, std::size_t size) { return std::span(static_cast<const int*>(begin), size); };
+  return {.first_column = ints(factor.super, factor.nsuper + 1),
+          .first_row = ints(factor.pi, factor.nsuper + 1),
+          .first_value = ints(factor.px, factor.nsuper + 1),
+          .row = ints(factor.s, factor.ssize),
+          .value = std::span(static_cast<const double*>(factor.x), factor.xsize)};
+}
+
 /// The diagonal of the factor L (A = L Lᵀ), in the order of elimination.
 std::vector<double> factor_diagonal(const cholmod_factor& factor) {
-  const auto* x = static_cast<const double*>(factor.x);
   std::vector<double> diagonal(factor.n);
   if (factor.is_super != 0) {
-    const auto* first_column = static_cast<const int*>(factor.super);
-    const auto* first_row = static_cast<const int*>(factor.pi);
-    const auto* first_value = static_cast<const int*>(factor.px);
+    const auto [first_column, first_row, first_value, row, value] = view_blocks(factor);
     for (std::size_t block = 0; block < factor.nsuper; ++block) {
       const int rows = first_row[block + 1] - first_row[block];
       for (int column = first_column[block]; column < first_column[block + 1]; ++column) {
-        const auto offset = static_cast<std::ptrdiff_t>(column - first_column[block]) * (rows + 1);
-        diagonal[static_cast<std::size_t>(column)] = x[first_value[block] + offset];
+        const int entry = first_value[block] + (column - first_column[block]) * (rows + 1);
+        diagonal[static_cast<std::size_t>(column)] = value[static_cast<std::size_t>(entry)];
       }
     }
   } else {
+    const auto* x = static_cast<const double*>(factor.x);
     const auto* start = static_cast<const int*>(factor.p);
     for (std::size_t column = 0; column < factor.n; ++column) diagonal[column] = x[start[column]];
   }
@@ -134,7 +141,7 @@ struct SparseCholesky::Factor {
   };
 
   Factor();
-  void choose_ordering(const SparseCholeskyOptions& options);
+  void set_up(const SparseCholeskyOptions& options);
   bool has_pattern(const Matrix& matrix) const;
   /// Unknown that is eliminated at `position`.
   int unknown(std::size_t position) const { return static_cast<const int*>(lower->Perm)[position]; }
@@ -162,7 +169,8 @@ SparseCholesky::Factor::Factor() : common(new cholmod_common), lower(nullptr, Fr
   common->final_ll = 1;
 }
 
-void SparseCholesky::Factor::choose_ordering(const SparseCholeskyOptions& options) {
+void SparseCholesky::Factor::set_up(const SparseCholeskyOptions& options) {
+  if (options.dense_blocks) common->supernodal = CHOLMOD_SUPERNODAL;
   if (options.ordering == Ordering::automatic) return;
   common->nmethods = 1;
   common->method[0].ordering = options.ordering == Ordering::minimum_degree      ? CHOLMOD_AMD
@@ -202,7 +210,7 @@ void SparseCholesky::Factor::require_positive_pivots(std::span<const double> val
 SparseCholesky::SparseCholesky(SparseCholeskyOptions options)
     : factor_(std::make_unique<Factor>()), options_(std::move(options)) {
   assert(options_.blas_threads >= 1);
-  factor_->choose_ordering(options_);
+  factor_->set_up(options_);
 }
 
 SparseCholesky::~SparseCholesky() = default;
@@ -278,6 +286,11 @@ const SymmetricPattern& SparseCholesky::pattern() const { return factor_->patter
 
 std::span<const int> SparseCholesky::elimination_order() const {
   return {static_cast<const int*>(factor_->lower->Perm), factor_->lower->n};
+}
+
+SparseCholesky::DenseBlocks SparseCholesky::dense_blocks() const {
+  assert(factor_->factorized && statistics_.supernodal);
+  return view_blocks(*factor_->lower);
 }
 
 }  // namespace sluice

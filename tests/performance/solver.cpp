@@ -26,24 +26,34 @@ template <int Dim>
 void compare_orderings(const LatticeProblem<Dim>& problem, int repetitions) {
   const std::vector<double> coefficient = DriftingCoefficients(problem.cells.size(), 0).at(0);
   const std::vector<double> values = problem.values(coefficient, 1e-3);
-  std::vector<double> b(static_cast<std::size_t>(problem.size()), 1.0), x = b;
+  std::vector<double> b(static_cast<std::size_t>(problem.size()), 1.0), x = b, inverse_diagonal = b;
+  for (int i = 0; i < problem.size(); ++i)
+    inverse_diagonal[static_cast<std::size_t>(i)] = 1 / values[problem.diagonal_slot(i)];
   const auto row = [&](const std::string& name, SparseCholeskyOptions options, double order_seconds) {
     SparseCholesky cholesky(std::move(options));
     cholesky.analyze(problem.pattern);
-    std::vector<double> factorize, solve;
+    std::vector<double> factorize, solve, packed_solve;
+    PackedFactor packed;
     for (int i = 0; i <= repetitions; ++i) {
       const SparseCholeskyStatistics before = cholesky.statistics();
       cholesky.factorize(values);
       cholesky.solve(b, x);
+      packed.copy(cholesky, inverse_diagonal);
+      double packed_seconds = 0;
+      {
+        const Stopwatch stopwatch(packed_seconds);
+        packed.solve(b, 1, x);
+      }
       if (i == 0) continue;
+      packed_solve.push_back(packed_seconds);
       factorize.push_back(cholesky.statistics().factorize_seconds - before.factorize_seconds);
       solve.push_back(cholesky.statistics().solve_seconds - before.solve_seconds);
     }
     const SparseCholeskyStatistics& s = cholesky.statistics();
-    fmt::print("  {:<4}{:>9}  {:<16}{:>11.1f}{:>11.2f}{:>11.1f}{:>11.1f}{:>11.2f}{:>9.1f}  {}\n",
-               fmt::format("{}-D", Dim), problem.size(), name, static_cast<double>(s.factor_nonzeros) / 1e5,
-               s.flops / 1e9, 1e3 * (s.analyze_seconds + order_seconds), 1e3 * median(factorize), 1e3 * median(solve),
-               median(factorize) / median(solve), s.supernodal ? "blocks" : "columns");
+    fmt::print("  {:<4}{:>9}  {:<16}{:>11.1f}{:>11.2f}{:>11.1f}{:>11.1f}{:>11.2f}{:>11.2f}\n", fmt::format("{}-D", Dim),
+               problem.size(), name, static_cast<double>(s.factor_nonzeros) / 1e5, s.flops / 1e9,
+               1e3 * (s.analyze_seconds + order_seconds), 1e3 * median(factorize), 1e3 * median(solve),
+               1e3 * median(packed_solve));
   };
   double seconds = 0;
   std::vector<int> order;
@@ -51,9 +61,9 @@ void compare_orderings(const LatticeProblem<Dim>& problem, int repetitions) {
     const Stopwatch stopwatch(seconds);
     order = nested_dissection<Dim>(problem.places);
   }
-  row("minimum degree", {.ordering = Ordering::minimum_degree, .permutation = {}}, 0);
-  row("METIS", {.ordering = Ordering::nested_dissection, .permutation = {}}, 0);
-  row("geometric", {.ordering = Ordering::given, .permutation = order}, seconds);
+  row("minimum degree", {.ordering = Ordering::minimum_degree, .permutation = {}, .dense_blocks = true}, 0);
+  row("METIS", {.ordering = Ordering::nested_dissection, .permutation = {}, .dense_blocks = true}, 0);
+  row("geometric", {.ordering = Ordering::given, .permutation = order, .dense_blocks = true}, seconds);
 }
 
 /// The same drifting systems for a solver that factorizes every step and one that keeps its factor, in turns; each has
@@ -103,8 +113,8 @@ void measure_solvers(bool smoke) {
   };
   const auto repetitions = [&](int size) { return smoke ? 1 : size < 50000 ? 9 : 3; };
   fmt::print("One system, one thread. Entries of the factor in 10^5, its operations in 10^9, times in ms\n");
-  fmt::print("  {:<4}{:>9}  {:<16}{:>11}{:>11}{:>11}{:>11}{:>11}{:>9}\n", "", "unknowns", "order", "entries",
-             "operations", "analyze", "factorize", "solve", "ratio");
+  fmt::print("  {:<4}{:>9}  {:<16}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n", "", "unknowns", "order", "entries",
+             "operations", "analyze", "factorize", "solve", "packed");
   for (const int cells : planes) compare_orderings(plane(cells), repetitions(cells * cells));
   for (const int cells : cubes) compare_orderings(cube(cells), repetitions(cells * cells * cells));
 

@@ -177,7 +177,7 @@ TEST(LaggedCholesky, SaysWhenRoundOffKeepsItFromTheGoal) {
   const auto report = solver.solve(values, b, x, 1e-30);
   EXPECT_FALSE(report.converged);
   EXPECT_LT(report.residual, 1e-13);
-  EXPECT_LE(report.iterations, 10);
+  EXPECT_LE(report.iterations, 20);  // ten refinements at most with the copy in single precision, and ten without
 }
 
 /// Solutions of steps [from, to), one after the other in one array.
