@@ -58,6 +58,19 @@ void PoreWater<Dim>::fill(Scene<Dim>& scene) {
 }
 
 template <int Dim>
+void PoreWater<Dim>::dry_above_zero_pressure(Scene<Dim>& scene) {
+  Columns& columns = scene.particles.columns;
+  const double* found = columns.data(new_pressure_);
+  for (std::size_t p = 0; p < scene.particles.size(); ++p) {
+    columns.data(pressure_)[p] = std::max(0.0, found[p]);
+    if (found[p] > 0 || columns.data(wet_)[p] == 0) continue;
+    columns.data(wet_)[p] = 0;
+    columns.data(scene.particles.mass)[p] = columns.data(inertia_)[p] = columns.data(solid_mass_)[p];
+    for (int a = 0; a < Dim; ++a) columns.data(pressure_gradient_, a)[p] = 0;
+  }
+}
+
+template <int Dim>
 void PoreWater<Dim>::set_initial_pressure(Scene<Dim>& scene) {
   using enum InitialPressure::Method;
   const InitialPressure& initial = water_.initial;
@@ -217,14 +230,32 @@ template <int Dim>
 void PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
                              double kick, const std::array<const double*, Dim>& relative,
                              PressureEquation<Dim>& equation) {
+  Columns& columns = scene.particles.columns;
+  std::array<double*, Dim> change;
+  for (int a = 0; a < Dim; ++a) change[a] = columns.data(acceleration_, a);
+  scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
+  scene.shape->gather_divergence(scene.view(block), work.motion_tile.data(), columns.data(divergence_), change);
+  sum(scene, b, block, kick, relative, equation);
+}
+
+template <int Dim>
+void PoreWater<Dim>::collect_at_rest(Scene<Dim>& scene, PressureEquation<Dim>& equation) {
+  Columns& columns = scene.particles.columns;
+  std::ranges::fill(columns.values(divergence_), 0.0);
+  for (int a = 0; a < Dim; ++a) std::ranges::fill(columns.values(acceleration_, a), 0.0);
+  for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b)
+    if (equation.is_wet(b)) sum(scene, b, scene.blocks.particle_blocks()[b], 1, {}, equation);
+}
+
+template <int Dim>
+void PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
+                         const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation) {
   CellSums<Dim>* const cells = equation.cell_sums(b);
   std::fill_n(cells, PressureGrid<Dim>::cell_tile, CellSums<Dim>{});
   Columns& columns = scene.particles.columns;
   const BlockParticles<Dim> view = scene.view(block);
-  std::array<double*, Dim> change;
+  std::array<const double*, Dim> change;
   for (int a = 0; a < Dim; ++a) change[a] = columns.data(acceleration_, a);
-  scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
-  scene.shape->gather_divergence(view, work.motion_tile.data(), columns.data(divergence_), change);
 
   const double* volume = columns.data(scene.particles.volume);
   const double* mass = columns.data(scene.particles.mass);

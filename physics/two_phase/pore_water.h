@@ -53,6 +53,11 @@ class PoreWater {
   void collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work, double kick,
                const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
 
+  /// The same for all blocks, with soil and water at rest.
+  void collect_at_rest(Scene<Dim>& scene, PressureEquation<Dim>& equation);
+  /// Particles whose pressure, as taken, is not positive hold no water.
+  void dry_above_zero_pressure(Scene<Dim>& scene);
+
   /// The new pressure from the vertices, and the forces of what it adds to the old one.
   void correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
                double increment, const PressureEquation<Dim>& equation);
@@ -78,9 +83,9 @@ class PoreWater {
   std::array<double, Dim> mobility(const PoreSpace& space, double porosity) const;
 
  private:
+  void sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
+           const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
   void zero_forces(const Scene<Dim>& scene, Lane* tile) const;
-  template <class Visit>
-  void for_wet(const Scene<Dim>& scene, const ParticleBlock<Dim>& block, const Visit& visit) const;
 
   const WaterCase& water_;
   std::vector<PoreSpace> spaces_;

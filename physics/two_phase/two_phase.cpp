@@ -27,7 +27,7 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
       pores_(water_, read_pore_spaces(definition, liquids(stress_.materials())), stress_.materials()),
       relative_(definition, water_, pores_),
       outside_(loads_, water_.ponds, -water_.density * definition.gravity.back(), grid_of<Dim>(definition.grid)),
-      pressure_(water_, grid_of<Dim>(definition.grid)) {
+      pressure_(water_, grid_of<Dim>(definition.grid), definition.gravity.back()) {
   for (int a = 0; a < Dim; ++a) gravity_[a] = definition.gravity[static_cast<std::size_t>(a)];
 }
 
@@ -49,9 +49,23 @@ template <int Dim>
 void TwoPhase<Dim>::initialise(Scene<Dim>& scene) {
   pores_.fill(scene);
   pores_.set_initial_pressure(scene);
+  if (water_.initial.method == InitialPressure::Method::steady_seepage) start_seepage(scene);
   SkeletonLoads<Dim> loads = pores_.skeleton_loads(scene, outside_);
   apply_initial_stress(initial_stress_, scene, stress_.materials(), loads);
   stress_.initialise(scene);
+}
+
+/// Steady seepage decides which part of the soil is wet, too.
+template <int Dim>
+void TwoPhase<Dim>::start_seepage(Scene<Dim>& scene) {
+  activate_blocks(scene);
+  pressure_.prepare(scene, pores_.wet_blocks(scene));
+  pores_.collect_at_rest(scene, pressure_);
+  discharge_ = pressure_.solve_steady(scene, outside_);
+  for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+    pores_.take_pressure(scene, b, block, work, pressure_);
+  });
+  pores_.dry_above_zero_pressure(scene);
 }
 
 // ---- the step ----
@@ -221,7 +235,8 @@ std::vector<std::pair<std::string, double>> TwoPhase<Dim>::totals() const {
           {"pressure_factor_nonzeros", static_cast<double>(s.factor_nonzeros)},
           {"pressure_analyze_seconds", s.analyze_seconds},
           {"pressure_factorize_seconds", s.factorize_seconds},
-          {"pressure_solve_seconds", s.solve_seconds}};
+          {"pressure_solve_seconds", s.solve_seconds},
+          {"initial_discharge", discharge_}};
 }
 
 template <int Dim>
