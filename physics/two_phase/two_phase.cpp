@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/simulation/energy.h"
 
@@ -50,8 +51,9 @@ void TwoPhase<Dim>::initialise(Scene<Dim>& scene) {
   pores_.fill(scene);
   pores_.set_initial_pressure(scene);
   if (water_.initial.method == InitialPressure::Method::steady_seepage) start_seepage(scene);
-  SkeletonLoads<Dim> loads = pores_.skeleton_loads(scene, outside_);
-  apply_initial_stress(initial_stress_, scene, stress_.materials(), loads);
+  activate_blocks(scene);
+  apply_initial_stress(initial_stress_, scene, stress_.materials(),
+                       pores_.skeleton_loads(scene, outside_, stress_.workspaces()));
   stress_.initialise(scene);
 }
 
@@ -103,8 +105,8 @@ void TwoPhase<Dim>::step_explicit(Scene<Dim>& scene, double dt) {
 /// Velocities of the nodes under gravity, effective stress and the old pressure, eq. (41).
 template <int Dim>
 void TwoPhase<Dim>::predict(Scene<Dim>& scene, double kick) {
-  const auto forces = [&](std::size_t b, const ParticleBlock<Dim>& block) {
-    pores_.scatter_forces(scene, b, block, water_.increment, outside_);
+  const auto forces = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
+    pores_.scatter_forces(scene, b, block, work.motion_tile.data(), water_.increment, outside_);
   };
   scatter(scene, ScatterWhat::momentum);
   const bool stress_first = stress_.timing() == StressTiming::usf;
@@ -113,8 +115,7 @@ void TwoPhase<Dim>::predict(Scene<Dim>& scene, double kick) {
     stress_.update(scene, scene.previous_dt, forces);
   } else {
     const auto timing = scene.clock.time(Stage::scatter);
-    parallel_for(scene.blocks.particle_blocks().size(),
-                 [&](std::size_t b) { forces(b, scene.blocks.particle_blocks()[b]); });
+    for_each_block(scene, stress_.workspaces(), forces);
   }
   advance_nodes(scene, kick, !stress_first, true);
   if (!relative_.active()) return;
@@ -128,9 +129,11 @@ void TwoPhase<Dim>::project(Scene<Dim>& scene, double dt, double kick) {
   {
     const auto timing = scene.clock.time(Stage::pressure_assembly);
     const auto relative = relative_.velocity(scene.particles);
+    power_.assign(scene.blocks.particle_blocks().size(), 0);
     for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
-      if (pressure_.is_wet(b)) pores_.collect(scene, b, block, work, kick, relative, pressure_);
+      if (pressure_.is_wet(b)) power_[b] = pores_.collect(scene, b, block, work, kick, relative, pressure_);
     });
+    dissipated_ += kick * std::accumulate(power_.begin(), power_.end(), 0.0);
   }
   pressure_.solve(scene, outside_, {dt, kick, scene.time + dt, water_.increment, water_.stabilisation});
 }
@@ -138,13 +141,16 @@ void TwoPhase<Dim>::project(Scene<Dim>& scene, double dt, double kick) {
 /// The nodes take up the new pressure, eq. (48).
 template <int Dim>
 void TwoPhase<Dim>::correct(Scene<Dim>& scene, double kick) {
+  const bool friction = scene.faces.any_friction();
+  if (friction) wall_.resize(scene.blocks, scene.shape->degree());
   {
     const auto timing = scene.clock.time(Stage::scatter);
     for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
       pores_.correct(scene, b, block, work, water_.increment, pressure_);
+      if (friction) pores_.scatter_pressure(scene, b, block, outside_, wall_);
     });
   }
-  correct_nodes(scene, kick);
+  correct_nodes(scene, kick, friction ? &wall_ : nullptr);
   if (relative_.active()) relative_.advance(scene, stress_.workspaces(), kick);
 }
 
@@ -199,13 +205,16 @@ std::vector<TimeStepLimit> TwoPhase<Dim>::hard_limits(const Scene<Dim>& scene) c
 
 template <int Dim>
 void TwoPhase<Dim>::store(Archive& archive) const {
-  archive.reals["two_phase"] = {stress_.fastest_wave()};
+  archive.reals["two_phase"] = {stress_.fastest_wave(), dissipated_, discharge_};
   pressure_.store(archive);
 }
 
 template <int Dim>
 void TwoPhase<Dim>::restore(const Archive& archive) {
-  stress_.restore_fastest_wave(archive.reals.at("two_phase").at(0));
+  const auto& own = archive.reals.at("two_phase");
+  stress_.restore_fastest_wave(own.at(0));
+  dissipated_ = own.at(1);
+  discharge_ = own.at(2);
   pressure_.restore(archive);
   placed_ = false;
 }
@@ -215,7 +224,8 @@ std::vector<std::pair<std::string, double>> TwoPhase<Dim>::energies(const Scene<
   return {{"kinetic", kinetic_energy(scene)},
           {"elastic", stress_.materials().stored_energy(scene.particles)},
           {"potential", potential_energy(scene)},
-          {"water_compression", pores_.compression_energy(scene.particles)}};
+          {"water_compression", pores_.compression_energy(scene.particles)},
+          {"seepage_dissipation", dissipated_}};
 }
 
 template <int Dim>
