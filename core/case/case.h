@@ -37,6 +37,13 @@ struct FaceCase {
   double friction = 0;  ///< Coulomb coefficient, used where tangential is `friction`
 };
 
+/// A material that gives way to another during the run, for example sand to liquefied sand.
+struct ChangeCase {
+  double at = 0;  ///< [s]
+  std::string material, becomes;
+  Place place;
+};
+
 /// How the equations are discretised. See docs/theory.md.
 struct SchemeCase {
   std::string shape = "quadratic_bspline";
@@ -79,6 +86,9 @@ struct Case {
   std::vector<BodyCase> bodies;
   std::map<std::string, FaceCase> faces;  ///< left right bottom top (front back in 3-D)
   Node initial_stress;                    ///< read by the physics module
+  Node surface_loads;                     ///< the same
+  Node water;                             ///< the same
+  std::vector<ChangeCase> changes;
   SchemeCase scheme;
   OutflowPolicy outflow = OutflowPolicy::error;
   double end_time = 0;  ///< [s]

@@ -169,13 +169,6 @@ Schema<T>& with_shapes(Schema<T>& schema, const Mutable& mutable_region, const C
   return schema;
 }
 
-Schema<Region> region_schema() {
-  Schema<Region> schema("region");
-  return with_shapes(
-      schema, [](Region& region) -> Region& { return region; },
-      [](const Region& region) -> const Region& { return region; });
-}
-
 // ---- bodies
 // ------------------------------------------------------------------------------------------------------------
 
@@ -293,6 +286,16 @@ Node write_faces(const Case& definition) {
     faces.set(name, keys);
   }
   return faces;
+}
+
+// ---- changes ----
+
+Schema<ChangeCase> change_schema() {
+  return Schema<ChangeCase>("change")
+      .quantity("at", &ChangeCase::at, unit::time, at_least(0), "Time of the change.")
+      .text("material", &ChangeCase::material, "Material that gives way.")
+      .text("becomes", &ChangeCase::becomes,
+            "Material that takes its place; points keep their stress and all other state.");
 }
 
 // ---- scheme
@@ -446,6 +449,21 @@ Schema<Case> make_case_schema() {
            .sentence = "Stress in the ground before anything moves; read by the physics module."},
           [](Case& definition, const Node& node, Problems&) { definition.initial_stress = node; },
           [](const Case& definition) { return definition.initial_stress; })
+      .custom(
+          {.name = "surface_loads",
+           .type = field_type::sections,
+           .default_text = "none",
+           .sentence = "Pressures on the surface of the material; read by the physics module."},
+          [](Case& definition, const Node& node, Problems&) { definition.surface_loads = node; },
+          [](const Case& definition) { return definition.surface_loads; })
+      .custom(
+          {.name = "water",
+           .type = field_type::section,
+           .default_text = "none",
+           .sentence = "Water in the pores and beside the soil; read by the physics module `two_phase`."},
+          [](Case& definition, const Node& node, Problems&) { definition.water = node; },
+          [](const Case& definition) { return definition.water; })
+      .sections("changes", &Case::changes, change_schema(), "Materials that give way to others during the run.", false)
       .section("scheme", &Case::scheme, scheme_schema(), "How the equations are discretised.")
       .choice<OutflowPolicy>(
           "outflow", &Case::outflow,
@@ -460,6 +478,16 @@ Schema<Case> make_case_schema() {
 }
 
 }  // namespace
+
+const Schema<Region>& region_schema() {
+  static const Schema<Region> schema = [] {
+    Schema<Region> declared("region");
+    return with_shapes(
+        declared, [](Region& region) -> Region& { return region; },
+        [](const Region& region) -> const Region& { return region; });
+  }();
+  return schema;
+}
 
 const Schema<Case>& case_schema() {
   static const Schema<Case> schema = make_case_schema();

@@ -202,6 +202,8 @@ void resolve_polygons(Node& tree, const std::string& case_file, Problems& proble
     for (Node& body : bodies->items) files.resolve(&body);
   if (Node* const observe = tree.find("observe"))
     for (Node& observation : observe->items) files.resolve(observation.find("region"));
+  if (Node* const loads = tree.find("surface_loads"))
+    for (Node& load : loads->items) files.resolve(load.find("region"));
 }
 
 }  // namespace sluice

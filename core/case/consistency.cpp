@@ -21,6 +21,7 @@ class Consistency {
 
   void run() {
     check_materials_of_bodies();
+    check_changes();
     const bool has_grid = check_grid();
     if (!has_grid) return;
     dimension_ = case_.grid.min.size();
@@ -124,6 +125,17 @@ class Consistency {
                                     allowed_words(name, earlier)));
       if (std::find(earlier.begin(), earlier.end(), body.material) == earlier.end()) earlier.push_back(body.material);
     }
+  }
+
+  void check_changes() {
+    std::vector<std::string> names;
+    for (const auto& [name, section] : case_.materials) names.push_back(name);
+    if (case_.changes.size() > 64) problems_.add(case_.changes[64].place, "changes: at most 64 are possible");
+    for (const ChangeCase& change : case_.changes)
+      for (const std::string& name : {change.material, change.becomes})
+        if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+          problems_.add(change.place,
+                        fmt::format("changes: unknown material '{}'; {}", name, allowed_words(name, names)));
   }
 
   void check_body(BodyCase& body, const Node& section) {

@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/case/table.h"
 #include "core/case/values.h"
 
 namespace sluice {
@@ -163,6 +164,23 @@ class Schema : public AnySchema {
       return numbers.empty() ? Node{} : value::from_quantities(numbers, unit);
     };
     return with(std::move(field));
+  }
+
+  /// A quantity that may change in time.
+  Schema& table(const std::string& key, Table T::*member, const Unit& unit, const Range& range,
+                const std::string& sentence, const std::optional<Table>& default_value = std::nullopt) {
+    return value_field<Table>(
+        table_doc(key, unit, range, sentence), member,
+        [=](const Node& node, Problems& problems) { return value::table(node, key, unit, range, problems); },
+        [=](const Table& table) { return value::from_table(table, unit); }, default_value);
+  }
+
+  Schema& table(const std::string& key, std::optional<Table> T::*member, const Unit& unit, const Range& range,
+                const std::string& sentence, const Absent& absent = {}) {
+    return optional_field<Table>(
+        table_doc(key, unit, range, sentence), member,
+        [=](const Node& node, Problems& problems) { return value::table(node, key, unit, range, problems); },
+        [=](const Table& table) { return value::from_table(table, unit); }, absent);
   }
 
   Schema& integer(const std::string& key, int T::*member, const Range& range, const std::string& sentence,
@@ -353,6 +371,11 @@ class Schema : public AnySchema {
   static FieldDoc number_doc(const std::string& key, const std::string& type, const Unit& unit, const Range& range,
                              const std::string& sentence) {
     return {.name = key, .type = type, .unit = unit.si, .range = range.text(unit), .sentence = sentence};
+  }
+  static FieldDoc table_doc(const std::string& key, const Unit& unit, const Range& range, const std::string& sentence) {
+    FieldDoc doc = number_doc(key, field_type::quantity, unit, range, sentence);
+    doc.alternatives = {{.type = field_type::points, .unit = unit.si}};
+    return doc;
   }
   static FieldDoc quantities_doc(const std::string& key, const Unit& unit, const Range& range,
                                  const Components& components, const std::string& sentence) {

@@ -66,7 +66,6 @@ void for_shared_rows(int tile, int n, const Row& row) {
 template <int Dim>
 void NodeFields<Dim>::collect(const Blocks<Dim>& blocks, std::size_t node_block, const LaneArray& tiles,
                               Lane* nodes) const {
-  std::fill_n(nodes, block_nodes<Dim>, Lane{});
   const auto& around = blocks.node_blocks()[node_block].particles;
   for (int n = 0; n < neighbourhood<Dim>; ++n) {
     const std::int32_t block = around[static_cast<std::size_t>(n)];
@@ -81,11 +80,18 @@ void NodeFields<Dim>::collect(const Blocks<Dim>& blocks, std::size_t node_block,
 
 template <int Dim>
 void NodeFields<Dim>::collect_momentum(const Blocks<Dim>& blocks, std::size_t node_block) {
+  std::fill_n(momentum(node_block), block_nodes<Dim>, Lane{});
   collect(blocks, node_block, momentum_tiles_, momentum(node_block));
 }
 
 template <int Dim>
 void NodeFields<Dim>::collect_force(const Blocks<Dim>& blocks, std::size_t node_block) {
+  std::fill_n(force(node_block), block_nodes<Dim>, Lane{});
+  add_force(blocks, node_block);
+}
+
+template <int Dim>
+void NodeFields<Dim>::add_force(const Blocks<Dim>& blocks, std::size_t node_block) {
   collect(blocks, node_block, force_tiles_, force(node_block));
 }
 

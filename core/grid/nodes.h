@@ -54,6 +54,8 @@ class NodeFields {
   /// Sums the tiles around a node block into its nodes, always in the same order.
   void collect_momentum(const Blocks<Dim>& blocks, std::size_t node_block);
   void collect_force(const Blocks<Dim>& blocks, std::size_t node_block);
+  /// Adds the force tiles to the forces that the nodes have.
+  void add_force(const Blocks<Dim>& blocks, std::size_t node_block);
 
   /// Copies the motion of the nodes under a particle block's tile to `tile` (tile_size * motion_lanes lanes).
   void load_motion(const Blocks<Dim>& blocks, std::size_t block, Lane* tile) const;

@@ -35,7 +35,7 @@ class PhysicsModule {
   virtual ~PhysicsModule() = default;
 
   /// The columns that it reads and writes, beside those that every scene has.
-  virtual void declare(Columns& particles) = 0;
+  virtual void declare(Particles& particles) = 0;
   /// Density [kg/m3] of the material with this index of Case::materials: sets the masses.
   virtual double density(int material) const = 0;
   /// Called once, when all particles are in place: initial stress and the like.
@@ -54,6 +54,12 @@ class PhysicsModule {
 
   /// Energies by name [J], for history.csv.
   virtual std::vector<std::pair<std::string, double>> energies(const Scene<Dim>& scene) const = 0;
+
+  /// Further numbers of the last step by name, for history.csv: iterations of a solver and the like. The same names in
+  /// every step, the same numbers in every run of a case.
+  virtual std::vector<std::pair<std::string, double>> step_numbers() const { return {}; }
+  /// Further numbers of the whole run so far, for summary.json; may hold times.
+  virtual std::vector<std::pair<std::string, double>> totals() const { return {}; }
 
   /// Sections that the module reads, with all defaults filled in, by name; for case.resolved.yaml.
   virtual std::vector<std::pair<std::string, Node>> resolved_sections() const = 0;

@@ -187,6 +187,7 @@ class Run {
 
     std::vector<std::string> history = {"step", "time_s", "dt_s", "limiter", "max_speed_m_s"};
     for (const auto& energy : simulation_->energies()) history.push_back(energy.first + "_energy_J");
+    for (const auto& [name, value] : simulation_->step_numbers()) history.push_back(name);
     std::vector<std::string> observed = {"step", "time_s"};
     for (std::size_t i = 0; i < observations_.size(); ++i)
       observed.push_back(case_.observe[i].name + "_" + unit_word(i));
@@ -213,6 +214,7 @@ class Run {
     const double time = simulation_->time();
     std::vector<CsvTable::Cell> row = {simulation_->steps(), time, info.dt, info.limiter, info.speed};
     for (const auto& energy : simulation_->energies()) row.emplace_back(energy.second);
+    for (const auto& [name, value] : simulation_->step_numbers()) row.emplace_back(value);
     history_->append(row);
     std::vector<CsvTable::Cell> observed = {simulation_->steps(), time};
     for (const auto& observation : observations_)
@@ -272,6 +274,7 @@ class Run {
     for (std::size_t i = 0; i < observations_.size(); ++i)
       s.observations[case_.observe[i].name] = observations_[i]->evaluate(simulation_->particles());
     s.extra["removed_particles"] = static_cast<double>(simulation_->removed_particles());
+    for (const auto& [name, value] : simulation_->totals()) s.extra[name] = value;
     s.extra["particle_bytes"] = static_cast<double>(simulation_->memory());
     write_summary(options_.folder / "summary.json", s);
     summary_ = s;

@@ -1,5 +1,6 @@
 #include "core/simulation/simulation.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/particles/fill.h"
@@ -18,7 +19,7 @@ class SimulationOf final : public Simulation {
       : definition_(definition),
         scene_(definition),
         module_(physics_registry<Dim>().find(definition.physics, definition.source.place)(definition)) {
-    module_->declare(scene_.particles.columns);
+    module_->declare(scene_.particles);
     fill_bodies<Dim>(
         definition, scene_.grid, [&](int m) { return module_->density(m); }, scene_.particles);
     module_->initialise(scene_);
@@ -31,13 +32,14 @@ class SimulationOf final : public Simulation {
   Particles& particles() override { return scene_.particles; }
 
   StepInfo advance(double until) override {
-    const TimeStepLimit dt = choose_time_step(*module_, scene_, until);
+    const double stop = change_materials(until);
+    const TimeStepLimit dt = choose_time_step(*module_, scene_, stop);
     longest_dt_ = std::max(longest_dt_, dt.seconds);
     if (dt.name != "output" && dt.seconds < collapse * longest_dt_) throw_time_step_collapsed(scene_, dt);
     module_->step(scene_, dt.seconds);
     if (!scene_.motion.inside) removed_ += apply_outflow(scene_, definition_.outflow);
-    const bool arrives = until - scene_.time <= dt.seconds * (1 + 1e-6);
-    scene_.time = arrives ? until : scene_.time + dt.seconds;
+    const bool arrives = stop - scene_.time <= dt.seconds * (1 + 1e-6);
+    scene_.time = arrives ? stop : scene_.time + dt.seconds;
     ++scene_.step;
     scene_.previous_dt = dt.seconds;
     return {dt.seconds, dt.name, largest_speed()};
@@ -51,6 +53,8 @@ class SimulationOf final : public Simulation {
     return limits;
   }
   std::vector<std::pair<std::string, double>> energies() const override { return module_->energies(scene_); }
+  std::vector<std::pair<std::string, double>> step_numbers() const override { return module_->step_numbers(); }
+  std::vector<std::pair<std::string, double>> totals() const override { return module_->totals(); }
   double largest_speed() const override { return std::sqrt(scene_.motion.largest_speed_squared); }
   std::map<std::string, double> stage_seconds() const override { return scene_.clock.seconds(); }
   std::size_t removed_particles() const override { return removed_; }
@@ -60,7 +64,7 @@ class SimulationOf final : public Simulation {
   void store(Archive& archive) const override {
     store_particles(scene_.particles, archive);
     archive.integers["blocks"] = scene_.blocks.record();
-    archive.integers["step"] = {scene_.step, static_cast<std::int64_t>(removed_)};
+    archive.integers["step"] = {scene_.step, static_cast<std::int64_t>(removed_), static_cast<std::int64_t>(changed_)};
     archive.reals["loop"] = {scene_.time,
                              scene_.previous_dt,
                              scene_.travelled,
@@ -77,6 +81,7 @@ class SimulationOf final : public Simulation {
     const auto& step = archive.integers.at("step");
     scene_.step = step[0];
     removed_ = static_cast<std::size_t>(step[1]);
+    changed_ = static_cast<std::uint64_t>(step.at(2));
     const auto& loop = archive.reals.at("loop");
     scene_.time = loop[0];
     scene_.previous_dt = loop[1];
@@ -88,6 +93,26 @@ class SimulationOf final : public Simulation {
   }
 
  private:
+  /// Makes the changes of material that are due; returns the time of the next one, at most `until`.
+  double change_materials(double until) {
+    for (std::size_t c = 0; c < definition_.changes.size(); ++c) {
+      const ChangeCase& change = definition_.changes[c];
+      if (change.at > scene_.time) {
+        until = std::min(until, change.at);
+        continue;
+      }
+      if (changed_ & (std::uint64_t{1} << c)) continue;
+      changed_ |= std::uint64_t{1} << c;
+      const auto number = [&](const std::string& name) {
+        return static_cast<std::int32_t>(std::ranges::find(scene_.particles.material_names, name) -
+                                         scene_.particles.material_names.begin());
+      };
+      std::ranges::replace(scene_.particles.material, number(change.material), number(change.becomes));
+      scene_.blocks.clear();  // particles are sorted by material
+    }
+    return until;
+  }
+
   double largest_speed_squared() const {
     double largest = 0;
     for (std::size_t p = 0; p < scene_.particles.size(); ++p) {
@@ -105,7 +130,8 @@ class SimulationOf final : public Simulation {
   Scene<Dim> scene_;
   std::unique_ptr<PhysicsModule<Dim>> module_;
   std::size_t removed_ = 0;
-  double longest_dt_ = 0;  // [s]
+  double longest_dt_ = 0;      // [s]
+  std::uint64_t changed_ = 0;  // a bit for each change of material that has been made
 
   /// A step shorter than this share of the longest one means that the run goes nowhere.
   static constexpr double collapse = 1e-4;

@@ -43,7 +43,9 @@ class Simulation {
 
   /// What the next step would be, and all limits on it [s], for `sluice check`.
   virtual std::vector<std::pair<std::string, double>> time_step_limits() const = 0;
-  virtual std::vector<std::pair<std::string, double>> energies() const = 0;  ///< [J] (2-D: J/m)
+  virtual std::vector<std::pair<std::string, double>> energies() const = 0;      ///< [J] (2-D: J/m)
+  virtual std::vector<std::pair<std::string, double>> step_numbers() const = 0;  ///< of the physics, last step
+  virtual std::vector<std::pair<std::string, double>> totals() const = 0;        ///< of the physics, so far
   virtual double largest_speed() const = 0;  ///< of a particle, after the last step [m/s]
   virtual std::map<std::string, double> stage_seconds() const = 0;
   virtual std::size_t removed_particles() const = 0;

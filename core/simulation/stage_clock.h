@@ -9,7 +9,7 @@
 namespace sluice {
 
 /// The stages of a step, in the textbook's words.
-enum class Stage { sort, scatter, nodes, stress, gather, output, count };
+enum class Stage { sort, scatter, nodes, stress, gather, pressure_assembly, pressure_solve, output, count };
 
 class StageClock {
  public:
@@ -32,7 +32,8 @@ class StageClock {
 
   Scope time(Stage stage) { return {*this, stage}; }
   std::map<std::string, double> seconds() const {
-    static constexpr std::array names = {"sort", "scatter", "nodes", "stress", "gather", "output"};
+    static constexpr std::array names = {"sort",   "scatter",           "nodes",          "stress",
+                                         "gather", "pressure_assembly", "pressure_solve", "output"};
     std::map<std::string, double> table;
     for (std::size_t s = 0; s < names.size(); ++s) table[names[s]] = seconds_[s];
     return table;

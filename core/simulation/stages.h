@@ -20,9 +20,9 @@ struct Workspace {
 /// with round-off.
 inline constexpr double travel_allowance = 0.999 * tile_margin;
 
-/// Sorts the particles into blocks if one of them may have left the tile of its block.
+/// Sorts the particles into blocks if one of them may have left the tile of its block; true if it did.
 template <int Dim>
-void activate_blocks(Scene<Dim>& scene);
+bool activate_blocks(Scene<Dim>& scene);
 
 /// Particles to nodes, eqs. (14)-(16): fills the tiles of all blocks.
 template <int Dim>
@@ -36,6 +36,12 @@ void velocity_from_momentum(Scene<Dim>& scene);
 /// summed; without, the momentum holds the impulse already.
 template <int Dim>
 void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force);
+
+/// The same once more, from the momentum that the nodes have, with the force tiles added to the forces that they have:
+/// a correction, for example by a pressure that was not known before. `without_friction`, or null, has in its force tiles
+/// a part of all forces, whose pressure on faces gives no friction.
+template <int Dim>
+void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction);
 
 /// Calls body(number of the block, block, workspace of the thread) for every block of particles, in parallel.
 template <int Dim, class Body>

@@ -161,7 +161,15 @@ SLUICE_ALWAYS_INLINE void add_to_nodes(const ChunkWeights<Dim, Shape>& w, int p,
   }
 }
 
-template <int Dim, class Shape, ScatterWhat What, bool Affine>
+template <int Dim>
+SLUICE_ALWAYS_INLINE Lane body_force(const std::array<const double*, Dim>& force, std::uint32_t p) {
+  if constexpr (Dim == 2)
+    return Lane{0, force[0][p], force[1][p], 0};
+  else
+    return Lane{0, force[0][p], force[1][p], force[2][p]};
+}
+
+template <int Dim, class Shape, ScatterWhat What, bool Affine, bool Body = false>
 SLUICE_MULTITARGET void scatter(const ScatterInput<Dim>& in, double impulse_dt, Lane* tile, Lane* force_tile) {
   constexpr bool momentum = What != ScatterWhat::force;
   constexpr bool impulse = What == ScatterWhat::momentum_and_impulse;
@@ -190,7 +198,11 @@ SLUICE_MULTITARGET void scatter(const ScatterInput<Dim>& in, double impulse_dt, 
       if constexpr (momentum)
         add_to_nodes<Dim, Shape, Affine, impulse>(w, k, mass_and_momentum<Dim>(in.mass[p], in.velocity, p), slope, flux,
                                                   tile);
-      if constexpr (force) add_to_nodes<Dim, Shape, false, true>(w, k, Lane{}, slope, flux, force_tile);
+      if constexpr (force) {
+        Lane body{};
+        if constexpr (Body) body = body_force<Dim>(in.body_force, p);
+        add_to_nodes<Dim, Shape, false, true>(w, k, body, slope, flux, force_tile);
+      }
     }
   }
 }
@@ -411,6 +423,47 @@ SLUICE_MULTITARGET MotionReport gather_motion(const BlockParticles<Dim>& block, 
   return report;
 }
 
+/// Writes component `component` of every lane of a chunk to a column.
+SLUICE_ALWAYS_INLINE void write_component(const Lane* lanes, int component, int count, double* __restrict column) {
+  const double* __restrict from = reinterpret_cast<const double*>(lanes) + component;
+#pragma omp simd
+  for (int p = 0; p < count; ++p) column[p] = from[4 * p];
+}
+
+template <int Dim, class Shape>
+SLUICE_MULTITARGET void gather_field(const BlockParticles<Dim>& block, const Lane* tile, const FieldGather<Dim>& out) {
+  ChunkWeights<Dim, Shape> w;
+  ChunkGathered<Dim> g;
+  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
+    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
+    weigh<Dim, Shape, false, false>(block, begin, count, w);
+    sum_chunk<Dim, Shape, true, true, false>(w, count, tile, g);
+    write_component(g.value[0], 0, count, out.value + begin);
+    for (int a = 0; a < Dim; ++a) write_component(g.gradient[a], 0, count, out.gradient[a] + begin);
+  }
+}
+
+template <int Dim, class Shape>
+SLUICE_MULTITARGET void gather_divergence(const BlockParticles<Dim>& block, const Lane* motion_tile, double* divergence,
+                                          const std::array<double*, Dim>& change) {
+  ChunkWeights<Dim, Shape> w;
+  ChunkGathered<Dim> g;
+  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
+    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
+    weigh<Dim, Shape, false, false>(block, begin, count, w);
+    sum_chunk<Dim, Shape, true, true, false>(w, count, motion_tile, g);
+    double* __restrict sum = divergence + begin;
+    write_component(g.gradient[0], 0, count, sum);
+    for (int a = 1; a < Dim; ++a) {
+      const double* __restrict slope = g.numbers(g.gradient[a]) + a;
+#pragma omp simd
+      for (int p = 0; p < count; ++p) sum[p] += slope[4 * p];
+    }
+    for (int a = 0; a < Dim; ++a)
+      write_component(g.value[motion_lanes<Dim> - 1], Dim == 2 ? 2 + a : a, count, change[a] + begin);
+  }
+}
+
 }  // namespace kernel
 
 /// The kernels of one shape function; see ShapeKernels.
@@ -457,7 +510,8 @@ class ShapeKernelsOf final : public ShapeKernels<Dim> {
       affine ? kernel::scatter<Dim, Shape, momentum, true>(in, dt, tile, force_tile)
              : kernel::scatter<Dim, Shape, momentum, false>(in, dt, tile, force_tile);
     else if (what == force)
-      kernel::scatter<Dim, Shape, force, false>(in, dt, tile, force_tile);
+      in.body_force[0] != nullptr ? kernel::scatter<Dim, Shape, force, false, true>(in, dt, tile, force_tile)
+                                  : kernel::scatter<Dim, Shape, force, false>(in, dt, tile, force_tile);
     else if (what == momentum_and_force)
       affine ? kernel::scatter<Dim, Shape, momentum_and_force, true>(in, dt, tile, force_tile)
              : kernel::scatter<Dim, Shape, momentum_and_force, false>(in, dt, tile, force_tile);
@@ -469,6 +523,16 @@ class ShapeKernelsOf final : public ShapeKernels<Dim> {
   double gather_strain(const BlockParticles<Dim>& particles, const Lane* motion_tile, double dt,
                        const StrainIncrements<Dim>& out) const override {
     return kernel::gather_strain<Dim, Shape>(particles, motion_tile, dt, out);
+  }
+
+  void gather_field(const BlockParticles<Dim>& particles, const Lane* tile,
+                    const FieldGather<Dim>& out) const override {
+    kernel::gather_field<Dim, Shape>(particles, tile, out);
+  }
+
+  void gather_divergence(const BlockParticles<Dim>& particles, const Lane* motion_tile, double* divergence,
+                         const std::array<double*, Dim>& change) const override {
+    kernel::gather_divergence<Dim, Shape>(particles, motion_tile, divergence, change);
   }
 
   MotionReport gather_motion(const BlockParticles<Dim>& particles, const Lane* motion_tile,

@@ -3,6 +3,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <unordered_map>
 
@@ -51,9 +52,11 @@ class Unknowns {
   int count_ = 0;
 };
 
-/// Particles in order of their cells: those of a cell share their nodes, so their stiffness is summed densely first.
+/// Particles with a skeleton in order of their cells: those of a cell share their nodes, so their stiffness is summed
+/// densely first.
 template <int Dim>
-std::vector<std::uint32_t> by_cell(const Scene<Dim>& scene, std::vector<std::int64_t>& cell) {
+std::vector<std::uint32_t> by_cell(const Scene<Dim>& scene, const Materials<Dim>& materials,
+                                   std::vector<std::int64_t>& cell) {
   const Particles& ps = scene.particles;
   cell.resize(ps.size());
   for (std::size_t p = 0; p < ps.size(); ++p) {
@@ -65,6 +68,7 @@ std::vector<std::uint32_t> by_cell(const Scene<Dim>& scene, std::vector<std::int
   }
   std::vector<std::uint32_t> order(ps.size());
   std::iota(order.begin(), order.end(), 0u);
+  std::erase_if(order, [&](std::uint32_t p) { return materials[static_cast<std::size_t>(ps.material[p])].liquid(); });
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) { return cell[p] < cell[q]; });
   return order;
 }
@@ -79,8 +83,9 @@ Stencil<Dim> stencil_at(const Scene<Dim>& scene, std::size_t p) {
 template <int Dim>
 class Assembly {
  public:
-  Assembly(const Scene<Dim>& scene, const Materials<Dim>& materials, Unknowns<Dim>& unknowns)
-      : scene_(scene), materials_(materials), unknowns_(unknowns) {
+  Assembly(const Scene<Dim>& scene, const Materials<Dim>& materials, const SkeletonLoads<Dim>& loads,
+           Unknowns<Dim>& unknowns)
+      : scene_(scene), materials_(materials), loads_(loads), unknowns_(unknowns) {
     const double slowest = slowest_wave_squared();
     mass_factor_ = regularization * slowest / (scene.grid.smallest_cell() * scene.grid.smallest_cell());
   }
@@ -99,6 +104,7 @@ class Assembly {
       }
       const auto elasticity = materials_[static_cast<std::size_t>(ps.material[p])].elasticity();
       add_particle(s, elasticity, ps.columns.data(ps.volume)[p], ps.columns.data(ps.mass)[p], stiffness, force);
+      add_loads(s, p, force);
     }
     std::vector<int> number(static_cast<std::size_t>(s.count) * Dim);
     for (int i = 0; i < s.count; ++i) {
@@ -148,15 +154,30 @@ class Assembly {
     }
   }
 
+  /// f_a += V p grad N_a + N_a b: pressure and body force on the skeleton.
+  void add_loads(const Stencil<Dim>& s, std::size_t p, Eigen::VectorXd& force) const {
+    const double push =
+        loads_.pressure == nullptr ? 0 : scene_.particles.columns.data(scene_.particles.volume)[p] * loads_.pressure[p];
+    for (int i = 0; i < s.count; ++i)
+      for (int d = 0; d < Dim; ++d) {
+        const auto a = static_cast<std::size_t>(i);
+        force[i * Dim + d] += push * s.gradient[a][d];
+        if (loads_.body_force[d] != nullptr) force[i * Dim + d] += s.value[a] * loads_.body_force[d][p];
+      }
+  }
+
+  /// Liquids do not count.
   double slowest_wave_squared() const {
-    double slowest = materials_[0].elasticity().constrained_modulus() / materials_[0].density();
-    for (std::size_t m = 1; m < materials_.size(); ++m)
-      slowest = std::min(slowest, materials_[m].elasticity().constrained_modulus() / materials_[m].density());
+    double slowest = std::numeric_limits<double>::infinity();
+    for (std::size_t m = 0; m < materials_.size(); ++m)
+      if (!materials_[m].liquid())
+        slowest = std::min(slowest, materials_[m].elasticity().constrained_modulus() / materials_[m].density());
     return slowest;
   }
 
   const Scene<Dim>& scene_;
   const Materials<Dim>& materials_;
+  const SkeletonLoads<Dim>& loads_;
   Unknowns<Dim>& unknowns_;
   double mass_factor_;
   std::vector<Eigen::Triplet<double>> entries_;
@@ -195,11 +216,11 @@ double set_stress(Scene<Dim>& scene, const IsotropicElasticity& e, const Eigen::
 }  // namespace
 
 template <int Dim>
-void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials) {
+void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials, const SkeletonLoads<Dim>& loads) {
   Unknowns<Dim> unknowns(scene);
-  Assembly<Dim> assembly(scene, materials, unknowns);
+  Assembly<Dim> assembly(scene, materials, loads, unknowns);
   std::vector<std::int64_t> cell;
-  const std::vector<std::uint32_t> order = by_cell(scene, cell);
+  const std::vector<std::uint32_t> order = by_cell(scene, materials, cell);
   for (std::size_t begin = 0; begin < order.size();) {
     std::size_t end = begin;
     while (end < order.size() && cell[order[end]] == cell[order[begin]]) ++end;
@@ -207,15 +228,16 @@ void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials) {
     begin = end;
   }
 
+  if (order.empty()) return;
   SparseCholesky cholesky;
   cholesky.factorize(assembly.matrix());
   const Eigen::VectorXd solution = cholesky.solve(assembly.force());
 
-  std::vector<double> displacement(scene.particles.size());
+  std::vector<double> displacement;
   double extent = 0;
-  for (std::size_t p = 0; p < scene.particles.size(); ++p) {
+  for (const std::uint32_t p : order) {
     const auto elasticity = materials[static_cast<std::size_t>(scene.particles.material[p])].elasticity();
-    displacement[p] = set_stress(scene, elasticity, solution, unknowns, p);
+    displacement.push_back(set_stress(scene, elasticity, solution, unknowns, p));
   }
   for (int a = 0; a < Dim; ++a) extent = std::max(extent, scene.grid.max[a] - scene.grid.min[a]);
   // The median: a few particles at a thin toe may hang on nodes that nothing else holds.
@@ -228,7 +250,7 @@ void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials) {
                     *median));
 }
 
-template void elastic_equilibrium<2>(Scene<2>&, const Materials<2>&);
-template void elastic_equilibrium<3>(Scene<3>&, const Materials<3>&);
+template void elastic_equilibrium<2>(Scene<2>&, const Materials<2>&, const SkeletonLoads<2>&);
+template void elastic_equilibrium<3>(Scene<3>&, const Materials<3>&, const SkeletonLoads<3>&);
 
 }  // namespace sluice

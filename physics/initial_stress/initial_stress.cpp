@@ -38,12 +38,13 @@ Node resolved(const InitialStress& initial_stress) { return schema().write(initi
 std::vector<FieldDoc> initial_stress_docs() { return schema().docs(); }
 
 template <int Dim>
-void apply_initial_stress(const InitialStress& initial_stress, Scene<Dim>& scene, const Materials<Dim>& materials) {
+void apply_initial_stress(const InitialStress& initial_stress, Scene<Dim>& scene, const Materials<Dim>& materials,
+                          const SkeletonLoads<Dim>& loads) {
   switch (initial_stress.method) {
     case InitialStress::Method::none:
       return;
     case InitialStress::Method::elastic_equilibrium:
-      elastic_equilibrium(scene, materials);
+      elastic_equilibrium(scene, materials, loads);
       return;
     case InitialStress::Method::uniform:
       break;
@@ -56,7 +57,7 @@ void apply_initial_stress(const InitialStress& initial_stress, Scene<Dim>& scene
       value = initial_stress.stress[static_cast<std::size_t>(c)];
 }
 
-template void apply_initial_stress<2>(const InitialStress&, Scene<2>&, const Materials<2>&);
-template void apply_initial_stress<3>(const InitialStress&, Scene<3>&, const Materials<3>&);
+template void apply_initial_stress<2>(const InitialStress&, Scene<2>&, const Materials<2>&, const SkeletonLoads<2>&);
+template void apply_initial_stress<3>(const InitialStress&, Scene<3>&, const Materials<3>&, const SkeletonLoads<3>&);
 
 }  // namespace sluice

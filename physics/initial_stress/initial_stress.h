@@ -24,15 +24,23 @@ Node resolved(const InitialStress& initial_stress);
 /// The keys of the section, for the reference.
 std::vector<FieldDoc> initial_stress_docs();
 
+/// What acts on the skeleton beside gravity; columns of all particles, null where there is nothing.
+template <int Dim>
+struct SkeletonLoads {
+  const double* pressure = nullptr;                ///< pushes its surroundings apart, like pore water [Pa]
+  std::array<const double*, Dim> body_force = {};  ///< [N]
+};
+
 /// Sets the stress of all particles. Throws CaseError.
 template <int Dim>
-void apply_initial_stress(const InitialStress& initial_stress, Scene<Dim>& scene, const Materials<Dim>& materials);
+void apply_initial_stress(const InitialStress& initial_stress, Scene<Dim>& scene, const Materials<Dim>& materials,
+                          const SkeletonLoads<Dim>& loads = {});
 
 /// Linear-elastic equilibrium of the particles where they are, under gravity and the faces of the grid: one sparse
 /// factorization of the stiffness matrix on the grid, with the particles as quadrature points and the shape functions
 /// of the scheme. The stresses are kept, the displacements dropped: docs/theory.md, eqs. (30)-(32). A face with
 /// friction holds the material. Throws CaseError if nothing holds the body.
 template <int Dim>
-void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials);
+void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials, const SkeletonLoads<Dim>& loads);
 
 }  // namespace sluice

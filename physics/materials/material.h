@@ -21,6 +21,7 @@ namespace sluice {
 template <int Dim>
 struct MaterialBatch {
   std::size_t size = 0;
+  double dt = 0;  ///< time over which the strain increments came [s]; 0 before the first step
   /// Strain increment of the step; in 2-D the zz entry is zero.
   std::array<const double*, symmetric_components<Dim>> strain_increment;
   /// In: Cauchy stress [Pa] at the beginning of the step, already rotated with the material (Jaumann). Out: updated.
@@ -43,7 +44,10 @@ class Material {
  public:
   virtual ~Material() = default;
 
-  virtual double density() const = 0;  ///< initial mass per volume [kg/m3]
+  /// Initial mass per volume [kg/m3]; of a porous material, without the water in its pores.
+  virtual double density() const = 0;
+  /// A liquid: has no skeleton, and its pressure belongs to the physics module.
+  virtual bool liquid() const { return false; }
   /// State variables that this model keeps on each of its points, beside the stress.
   virtual std::vector<ColumnSpec> columns() const { return {}; }
   /// The tangent at small strain: sets the wave speed and the elastic equilibrium.

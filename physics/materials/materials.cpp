@@ -119,15 +119,16 @@ SLUICE_MULTITARGET bool all_finite(std::size_t n, const std::array<double*, Comp
 }  // namespace stress_update
 
 template <int Dim>
-StressReport Materials<Dim>::update_stress(Particles& particles, const Blocks<Dim>& blocks,
-                                           const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain) const {
+StressReport Materials<Dim>::update_stress(Particles& particles, ColumnId inertia, const Blocks<Dim>& blocks,
+                                           const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain,
+                                           double dt) const {
   Columns& columns = particles.columns;
   StressReport report;
   for (std::uint32_t b = block.first_batch; b < block.last_batch; ++b) {
     const Batch& batch = blocks.batches()[b];
     const std::size_t n = batch.end - batch.begin, offset = batch.begin - block.begin;
     const auto m = static_cast<std::size_t>(batch.material);
-    MaterialBatch<Dim> material_batch{n, {}, {}, {}};
+    MaterialBatch<Dim> material_batch{n, dt, {}, {}, {}};
     std::array<const double*, spin_components<Dim>> rotation;
     for (std::size_t c = 0; c < rotation.size(); ++c) rotation[c] = strain.rotation[c] + offset;
     for (int c = 0; c < symmetric_components<Dim>; ++c) {
@@ -143,7 +144,7 @@ StressReport Materials<Dim>::update_stress(Particles& particles, const Blocks<Di
     stress_update::rotate(n, material_batch.stress, rotation);
     materials_[m]->update(material_batch);
     const auto& e = material_batch.strain_increment;
-    const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(particles.mass) + batch.begin,
+    const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(inertia) + batch.begin,
                                                      columns.data(particles.volume) + batch.begin);
     const double modulus = materials_[m]->elasticity().constrained_modulus();
     report.fastest_wave = std::max(report.fastest_wave, std::sqrt(modulus * volume.largest_specific_volume));
@@ -166,9 +167,9 @@ double Materials<Dim>::stored_energy(const Particles& particles) const {
 }
 
 template <int Dim>
-double Materials<Dim>::fastest_wave(const Particles& particles) const {
+double Materials<Dim>::fastest_wave(const Particles& particles, ColumnId inertia) const {
   const double* volume = particles.columns.data(particles.volume);
-  const double* mass = particles.columns.data(particles.mass);
+  const double* mass = particles.columns.data(inertia);
   double fastest = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const double modulus =

@@ -13,7 +13,7 @@ namespace sluice {
 
 /// What the stress update of a block found.
 struct StressReport {
-  double fastest_wave = 0;  ///< largest sqrt(M / rho) [m/s]
+  double fastest_wave = 0;  ///< largest sqrt(M V / inertia) [m/s]
   bool sound = true;        ///< no particle is inverted and all stresses are finite
 };
 
@@ -31,14 +31,15 @@ class Materials {
 
   /// Objective stress update of one block, eqs. (22)-(25) of docs/theory.md: rotates the stress with the material
   /// (Jaumann, by the exact rotation of Hughes & Winget 1980), then applies each material's law to its batch; updates
-  /// the volumes. `strain` is indexed from 0 at the block's first particle.
-  StressReport update_stress(Particles& particles, const Blocks<Dim>& blocks, const ParticleBlock<Dim>& block,
-                             const StrainIncrements<Dim>& strain) const;
+  /// the volumes. `strain` is indexed from 0 at the block's first particle; `inertia` is the column of the mass [kg]
+  /// that elastic waves set in motion, `dt` [s] the time over which the strains came.
+  StressReport update_stress(Particles& particles, ColumnId inertia, const Blocks<Dim>& blocks,
+                             const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain, double dt) const;
 
   /// Elastic energy stored in all particles [J].
   double stored_energy(const Particles& particles) const;
-  /// Largest sqrt(M / rho) over all particles [m/s].
-  double fastest_wave(const Particles& particles) const;
+  /// Largest sqrt(M V / inertia) over all particles [m/s].
+  double fastest_wave(const Particles& particles, ColumnId inertia) const;
 
  private:
   std::vector<std::string> names_;

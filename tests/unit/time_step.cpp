@@ -24,7 +24,7 @@ Case definition(const std::string& time_step) {
 class Limits final : public PhysicsModule<2> {
  public:
   double wave = 1, advection = 2, hard = 3;
-  void declare(Columns&) override {}
+  void declare(Particles&) override {}
   double density(int) const override { return 1; }
   void initialise(Scene<2>&) override {}
   std::vector<TimeStepLimit> hard_limits(const Scene<2>&) const override { return {{hard, "wave"}}; }

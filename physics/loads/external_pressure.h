@@ -1,0 +1,63 @@
+/// ExternalPressure: pressures on the surface of the material, from surface loads and ponded water.
+///
+/// The surface is never looked for. With any continuous field P(x, t) that has the wanted values on the surface, the
+/// divergence theorem turns the traction -P n into volume terms (docs/theory.md, section 9):
+///
+///   -int_surface N P n dA = -int_volume P grad N dV - int_volume N grad P dV
+///
+/// so particles scatter the stress sigma + P and the body force -V grad P. On a wall the reaction changes by P.
+#pragma once
+
+#include <vector>
+
+#include "core/case/case.h"
+#include "core/case/geometry.h"
+#include "core/case/schema.h"
+#include "core/grid/geometry.h"
+#include "core/grid/lane.h"
+
+namespace sluice {
+
+/// A pressure on whatever surface lies in a region.
+struct SurfaceLoad {
+  Table pressure;                ///< [Pa], pushes where positive
+  std::optional<Region> region;  ///< absent: everywhere
+  double fade = 0;               ///< [m] outside of the region over which it goes to zero
+};
+
+/// Water that stands on the soil.
+struct Pond {
+  Table level;                   ///< [m] along the last axis
+  std::optional<Region> region;  ///< absent: everywhere
+  double fade = 0;               ///< [m], as above
+};
+
+/// The section `surface_loads` of a case. Throws CaseError.
+std::vector<SurfaceLoad> read_surface_loads(const Node& section);
+Node resolved_surface_loads(const std::vector<SurfaceLoad>& loads);
+const Schema<SurfaceLoad>& surface_load_schema();
+const Schema<Pond>& pond_schema();
+
+template <int Dim>
+class ExternalPressure {
+ public:
+  /// `unit_weight` is that of the ponds' water [N/m3].
+  ExternalPressure(std::vector<SurfaceLoad> loads, std::vector<Pond> ponds, double unit_weight,
+                   const GridGeometry<Dim>& grid);
+
+  bool any() const { return !loads_.empty() || !ponds_.empty(); }
+  /// The whole pressure, and that of the ponds alone, which stands in the pores of the surface, too [Pa].
+  double at(const Vector<Dim>& x, double t) const;
+  double of_ponds(const Vector<Dim>& x, double t) const;
+  /// The whole pressure at the vertices of the cells around a block, as a tile of motion lanes for linear functions:
+  /// particles then find the pressure and its gradient between the vertices.
+  void load(const Index<Dim>& first_cell, double t, Lane* tile) const;
+
+ private:
+  std::vector<SurfaceLoad> loads_;
+  std::vector<Pond> ponds_;
+  double unit_weight_;
+  GridGeometry<Dim> grid_;
+};
+
+}  // namespace sluice

@@ -1,0 +1,422 @@
+#include "physics/two_phase/pore_water.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sluice {
+
+namespace {
+constexpr double infinity = std::numeric_limits<double>::infinity();
+}
+
+template <int Dim>
+PoreWater<Dim>::PoreWater(const WaterCase& water, std::vector<PoreSpace> spaces, const Materials<Dim>& materials)
+    : water_(water),
+      spaces_(std::move(spaces)),
+      materials_(materials),
+      linear_(shape_registry<Dim>().find("linear", {})()) {}
+
+template <int Dim>
+void PoreWater<Dim>::declare(Particles& particles, bool with_body_force) {
+  Columns& columns = particles.columns;
+  using enum Role;
+  pressure_ = columns.declare({"pore_pressure", "Pa", 1, state, "Pressure of the water, positive in compression."});
+  pressure_gradient_ =
+      columns.declare({"pore_pressure_gradient", "Pa/m", Dim, state, "Gradient of the pore pressure.", false});
+  porosity_ = columns.declare({"porosity", "1", 1, state, "Volume of pores per volume."});
+  wet_ = columns.declare({"wet", "1", 1, state, "1 where the pores are full of water, 0 where they hold none."});
+  solid_mass_ = columns.declare({"solid_mass", "kg", 1, state, "Mass of the grains.", false});
+  inertia_ =
+      columns.declare({"skeleton_inertia", "kg", 1, state, "Least mass that elastic waves set in motion.", false});
+  wet_volume_ = columns.declare({"wet_volume", "m3", 1, derived, "Volume, where the pores are full of water.", false});
+  divergence_ = columns.declare({"divergence", "1/s", 1, derived, "Divergence of the predicted velocity.", false});
+  acceleration_ = columns.declare({"predicted_change", "m/s", Dim, derived, "Predicted change of velocity.", false});
+  new_pressure_ = columns.declare({"new_pore_pressure", "Pa", 1, derived, "Pressure at the end of the step.", false});
+  total_stress_ =
+      columns.declare({"total_normal_stress", "Pa", Dim, derived, "Normal stresses that forces come from.", false});
+  zero_ = columns.declare({"zero", "1", 1, derived, "Zeros.", false});
+  if (!with_body_force) return;
+  outside_pressure_ = columns.declare({"outside_pressure", "Pa", 1, derived, "Pressure from outside.", false});
+  body_force_ = columns.declare({"body_force", "N", Dim, derived, "Force that goes with outside pressure.", false});
+}
+
+template <int Dim>
+void PoreWater<Dim>::fill(Scene<Dim>& scene) {
+  Columns& columns = scene.particles.columns;
+  double* mass = columns.data(scene.particles.mass);
+  double* volume = columns.data(scene.particles.volume);
+  for (std::size_t p = 0; p < scene.particles.size(); ++p) {
+    const auto m = static_cast<std::size_t>(scene.particles.material[p]);
+    const double x = columns.data(scene.particles.position)[p], z = columns.data(scene.particles.position, Dim - 1)[p];
+    const bool wet = spaces_[m].liquid || (spaces_[m].saturated && water_.below_table(x, z));
+    const double dry_density = materials_[m].density(), n = spaces_[m].porosity;
+    const double solid = dry_density * volume[p];
+    columns.data(wet_)[p] = wet ? 1 : 0;
+    columns.data(porosity_)[p] = n;
+    columns.data(solid_mass_)[p] = solid;
+    mass[p] = solid + (wet && !spaces_[m].liquid ? n * water_.density * volume[p] : 0);
+    // The shortest waves do not compress the water between vertices: with u-p the whole mass moves, with an inertia of
+    // its own the water may stay behind.
+    columns.data(inertia_)[p] = water_.formulation == Formulation::u_p ? mass[p] : solid;
+  }
+}
+
+template <int Dim>
+void PoreWater<Dim>::dry_above_zero_pressure(Scene<Dim>& scene) {
+  Columns& columns = scene.particles.columns;
+  const double* found = columns.data(new_pressure_);
+  for (std::size_t p = 0; p < scene.particles.size(); ++p) {
+    columns.data(pressure_)[p] = std::max(0.0, found[p]);
+    if (found[p] > 0 || columns.data(wet_)[p] == 0) continue;
+    columns.data(wet_)[p] = 0;
+    columns.data(scene.particles.mass)[p] = columns.data(inertia_)[p] = columns.data(solid_mass_)[p];
+    for (int a = 0; a < Dim; ++a) columns.data(pressure_gradient_, a)[p] = 0;
+  }
+}
+
+template <int Dim>
+void PoreWater<Dim>::set_initial_pressure(Scene<Dim>& scene) {
+  using enum InitialPressure::Method;
+  const InitialPressure& initial = water_.initial;
+  const double weight = -water_.density * scene.gravity[Dim - 1];
+  Columns& columns = scene.particles.columns;
+  for (std::size_t p = 0; p < scene.particles.size(); ++p) {
+    if (columns.data(wet_)[p] == 0) continue;
+    if (initial.method == uniform) columns.data(pressure_)[p] = initial.pressure;
+    if (initial.method != hydrostatic) continue;
+    const double x = columns.data(scene.particles.position)[p], z = columns.data(scene.particles.position, Dim - 1)[p];
+    const double level = initial.level ? *initial.level : water_.table_level(x);
+    const double hydrostatic_pressure = weight * (level - z), least = -initial.suction.value_or(infinity);
+    columns.data(pressure_)[p] = std::max(hydrostatic_pressure, least);
+    columns.data(pressure_gradient_, Dim - 1)[p] = hydrostatic_pressure > least ? -weight : 0;
+  }
+}
+
+template <int Dim>
+bool PoreWater<Dim>::any_liquid() const {
+  return std::any_of(spaces_.begin(), spaces_.end(), [](const PoreSpace& space) { return space.liquid; });
+}
+
+template <int Dim>
+std::vector<char> PoreWater<Dim>::wet_blocks(const Scene<Dim>& scene) const {
+  const double* wet = scene.particles.columns.data(wet_);
+  std::vector<char> blocks;
+  for (const auto& block : scene.blocks.particle_blocks())
+    blocks.push_back(std::any_of(wet + block.begin, wet + block.end, [](double w) { return w != 0; }) ? 1 : 0);
+  return blocks;
+}
+
+template <int Dim>
+SkeletonLoads<Dim> PoreWater<Dim>::skeleton_loads(Scene<Dim>& scene, const ExternalPressure<Dim>& outside,
+                                                  std::vector<Workspace<Dim>>& workspaces) {
+  Columns& columns = scene.particles.columns;
+  double* push = columns.data(new_pressure_);
+  std::ranges::copy(columns.values(pressure_), push);
+  SkeletonLoads<Dim> loads{push, {}};
+  if (!outside.any()) return loads;
+  for_each_block(scene, workspaces, [&](std::size_t, const auto& block, Workspace<Dim>& work) {
+    take_outside_pressure(scene, block, work.motion_tile.data(), outside);
+    for (std::uint32_t p = block.begin; p < block.end; ++p) push[p] -= columns.data(outside_pressure_)[p];
+  });
+  for (int a = 0; a < Dim; ++a) loads.body_force[a] = columns.data(body_force_, a);
+  return loads;
+}
+
+// ---- forces ----
+
+/// Outside pressure at the particles, and the force -V grad P that goes with it.
+template <int Dim>
+void PoreWater<Dim>::take_outside_pressure(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
+                                           const ExternalPressure<Dim>& outside) {
+  Columns& columns = scene.particles.columns;
+  const double* volume = columns.data(scene.particles.volume);
+  FieldGather<Dim> out{columns.data(outside_pressure_), {}};
+  for (int a = 0; a < Dim; ++a) out.gradient[a] = columns.data(body_force_, a);
+  outside.load(block.first_cell, scene.time, tile);
+  linear_->gather_field(scene.view(block), tile, out);
+  for (int a = 0; a < Dim; ++a)
+    for (std::uint32_t p = block.begin; p < block.end; ++p) out.gradient[a][p] *= -volume[p];
+}
+
+template <int Dim>
+void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
+                                    double increment, const ExternalPressure<Dim>& outside) {
+  Columns& columns = scene.particles.columns;
+  ScatterInput<Dim> in = scene.scatter_input(block);
+  const double* pressure = columns.data(pressure_);
+  for (int a = 0; a < Dim; ++a) {
+    const double* effective = in.stress[a];
+    double* total = columns.data(total_stress_, a);
+    for (std::uint32_t p = block.begin; p < block.end; ++p) total[p] = effective[p] - increment * pressure[p];
+    in.stress[a] = total;
+  }
+  if (outside.any()) {
+    take_outside_pressure(scene, block, tile, outside);
+    const double* here = columns.data(outside_pressure_);
+    for (int a = 0; a < Dim; ++a) {
+      double* total = columns.data(total_stress_, a);
+      for (std::uint32_t p = block.begin; p < block.end; ++p) total[p] += here[p];
+      in.body_force[a] = columns.data(body_force_, a);
+    }
+  }
+  scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, scene.nodes.force_tile(b));
+}
+
+template <int Dim>
+void PoreWater<Dim>::zero_forces(const Scene<Dim>& scene, Lane* tile) const {
+  std::fill_n(tile, scene.nodes.tile_size(), Lane{});
+}
+
+template <int Dim>
+void PoreWater<Dim>::take_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
+                                   Workspace<Dim>& work, const PressureEquation<Dim>& equation) {
+  Columns& columns = scene.particles.columns;
+  double* pressure = columns.data(new_pressure_);
+  const double* wet = columns.data(wet_);
+  FieldGather<Dim> out{pressure, {}};
+  for (int a = 0; a < Dim; ++a) out.gradient[a] = columns.data(pressure_gradient_, a);
+  equation.load(b, work.motion_tile.data());
+  linear_->gather_field(scene.view(block), work.motion_tile.data(), out);
+  for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
+    const Batch& batch = scene.blocks.batches()[k];
+    // Free water tears rather than be pulled; the continuation beyond a ragged surface would pull.
+    const bool liquid = spaces_[static_cast<std::size_t>(batch.material)].liquid;
+    const double least = liquid ? 0 : -infinity;
+    for (std::uint32_t p = batch.begin; p < batch.end; ++p)
+      pressure[p] = wet[p] != 0 ? std::max(pressure[p], least) : 0;
+  }
+}
+
+template <int Dim>
+void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
+                             double increment, const PressureEquation<Dim>& equation) {
+  if (!equation.is_wet(b)) {
+    zero_forces(scene, scene.nodes.force_tile(b));
+    return;
+  }
+  Columns& columns = scene.particles.columns;
+  take_pressure(scene, b, block, work, equation);
+  const double* added = columns.data(new_pressure_);
+  double* pressure = columns.data(pressure_);
+  double* stress = columns.data(total_stress_);
+  for (std::uint32_t p = block.begin; p < block.end; ++p) {
+    stress[p] = increment * pressure[p] - added[p];
+    pressure[p] = added[p];
+  }
+  ScatterInput<Dim> in = scene.scatter_input(block);
+  in.stress.fill(columns.data(zero_));
+  for (int a = 0; a < Dim; ++a) in.stress[a] = stress;
+  scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, scene.nodes.force_tile(b));
+}
+
+template <int Dim>
+void PoreWater<Dim>::scatter_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
+                                      const ExternalPressure<Dim>& outside, NodeFields<Dim>& nodes) {
+  Columns& columns = scene.particles.columns;
+  const double* pressure = columns.data(pressure_);
+  double* stress = columns.data(total_stress_);
+  for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] = -pressure[p];
+  if (outside.any()) {
+    const double* wet = columns.data(wet_);
+    const double* here = columns.data(outside_pressure_);
+    for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] += wet[p] * here[p];
+  }
+  ScatterInput<Dim> in = scene.scatter_input(block);
+  in.stress.fill(columns.data(zero_));
+  for (int a = 0; a < Dim; ++a) in.stress[a] = stress;
+  scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, nodes.force_tile(b));
+}
+
+// ---- to cells and vertices ----
+
+template <int Dim>
+std::array<double, Dim> PoreWater<Dim>::mobility(const PoreSpace& space, double porosity) const {
+  std::array<double, Dim> mobility{};
+  if (space.liquid) return mobility;
+  const auto kozeny = [](double n) { return n * n * n / ((1 - n) * (1 - n)); };
+  const double factor = space.kozeny_carman ? kozeny(porosity) / kozeny(space.porosity) : 1;
+  for (std::size_t a = 0; a < Dim; ++a)
+    mobility[a] = factor * space.permeability[a] / (water_.density * standard_gravity);
+  return mobility;
+}
+
+namespace {
+
+/// The cell of a point in the tile of its block; points outside count to the rim.
+template <int Dim>
+std::size_t place_in_tile(const GridGeometry<Dim>& grid, const Index<Dim>& first_cell, const Vector<Dim>& x) {
+  constexpr int width = PressureGrid<Dim>::cell_tile_width;
+  const Index<Dim> cell = grid.cell_of(x);
+  std::size_t place = 0;
+  for (int a = Dim - 1; a >= 0; --a)
+    place = place * width + static_cast<std::size_t>(std::clamp(cell[a] - first_cell[a] + tile_margin, 0, width - 1));
+  return place;
+}
+
+}  // namespace
+
+template <int Dim>
+double PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
+                               double kick, const std::array<const double*, Dim>& relative,
+                               PressureEquation<Dim>& equation) {
+  Columns& columns = scene.particles.columns;
+  std::array<double*, Dim> change;
+  for (int a = 0; a < Dim; ++a) change[a] = columns.data(acceleration_, a);
+  scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
+  scene.shape->gather_divergence(scene.view(block), work.motion_tile.data(), columns.data(divergence_), change);
+  return sum(scene, b, block, kick, relative, equation);
+}
+
+template <int Dim>
+void PoreWater<Dim>::collect_at_rest(Scene<Dim>& scene, PressureEquation<Dim>& equation) {
+  Columns& columns = scene.particles.columns;
+  std::ranges::fill(columns.values(divergence_), 0.0);
+  for (int a = 0; a < Dim; ++a) std::ranges::fill(columns.values(acceleration_, a), 0.0);
+  for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b)
+    if (equation.is_wet(b)) sum(scene, b, scene.blocks.particle_blocks()[b], 1, {}, equation);
+}
+
+template <int Dim>
+double PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
+                           const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation) {
+  CellSums<Dim>* const cells = equation.cell_sums(b);
+  std::fill_n(cells, PressureGrid<Dim>::cell_tile, CellSums<Dim>{});
+  Columns& columns = scene.particles.columns;
+  const BlockParticles<Dim> view = scene.view(block);
+  std::array<const double*, Dim> change;
+  for (int a = 0; a < Dim; ++a) change[a] = columns.data(acceleration_, a);
+
+  const double* volume = columns.data(scene.particles.volume);
+  const double* mass = columns.data(scene.particles.mass);
+  const double* porosity = columns.data(porosity_);
+  const double* wet = columns.data(wet_);
+  double* wet_volume = columns.data(wet_volume_);
+  std::array<const double*, Dim> slope;
+  for (int a = 0; a < Dim; ++a) slope[a] = columns.data(pressure_gradient_, a);
+  double dissipated = 0;
+  const double compressibility = water_.compressibility();
+  const double own = relative[0] != nullptr ? 1 : 0;  // inertia of the water's own
+  for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
+    const Batch& batch = scene.blocks.batches()[k];
+    const PoreSpace& space = spaces_[static_cast<std::size_t>(batch.material)];
+    const double modulus = materials_[static_cast<std::size_t>(batch.material)].elasticity().constrained_modulus();
+    const double compliance = modulus > 0 ? 1 / modulus : 0;
+    for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
+      wet_volume[p] = wet[p] != 0 ? volume[p] : 0;
+      if (wet[p] == 0) continue;
+      Vector<Dim> x;
+      for (int a = 0; a < Dim; ++a) x[a] = view.position[a][p];
+      CellSums<Dim>& cell = cells[place_in_tile<Dim>(scene.grid, view.first_cell, x)];
+      const double v = volume[p], n = porosity[p], specific = v / mass[p], lightness = water_.density * specific;
+      cell.volume += v;
+      cell.inverse_density += v * specific;
+      cell.compliance += v * compliance;
+      cell.storage += v * n * compressibility;
+      if (space.liquid) continue;
+      const auto k_over_weight = mobility(space, n);
+      // mu = m_s m_w / rho, per volume
+      const double reduced = own * n * water_.density * (1 - n * water_.density * specific);
+      for (std::size_t a = 0; a < Dim; ++a) {
+        const double resistance = 1 / k_over_weight[a], inertial = reduced / (n * n * kick);
+        const double share = 1 - own * lightness;  // of the relative velocity that counts beside that of the mixture
+        const double mobile = share / (resistance + inertial);
+        cell.mobility[a] += v * mobile;
+        const double drive = water_.density * (scene.gravity[a] - change[a][p] / kick);
+        cell.push[a] += v * mobile * (drive + (own != 0 ? inertial * n * relative[a][p] : 0));
+        const double flux = own != 0 ? n * relative[a][p] : k_over_weight[a] * (drive - slope[a][p]);
+        dissipated += v * flux * flux * resistance;
+      }
+    }
+  }
+
+  // {V, V p, V div v} to the vertices, with the pressure continued to them by its gradient.
+  ScatterInput<Dim> in = scene.scatter_input(block);
+  in.mass = wet_volume;
+  in.velocity.fill(columns.data(zero_));
+  in.velocity[0] = columns.data(pressure_);
+  in.velocity[1] = columns.data(divergence_);
+  in.affine.fill(columns.data(zero_));
+  for (int a = 0; a < Dim; ++a) in.affine[static_cast<std::size_t>(a)] = columns.data(pressure_gradient_, a);
+  linear_->scatter(ScatterWhat::momentum, in, 0, equation.vertex_tile(b), nullptr);
+  return dissipated;
+}
+
+// ---- volumes ----
+
+template <int Dim>
+void PoreWater<Dim>::follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& block) {
+  Columns& columns = scene.particles.columns;
+  double* volume = columns.data(scene.particles.volume);
+  double* mass = columns.data(scene.particles.mass);
+  double* porosity = columns.data(porosity_);
+  const double* solid = columns.data(solid_mass_);
+  const double* wet = columns.data(wet_);
+  for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
+    const Batch& batch = scene.blocks.batches()[k];
+    const auto m = static_cast<std::size_t>(batch.material);
+    const PoreSpace& space = spaces_[m];
+    const double density = materials_[m].density();
+    if (space.liquid) {
+      // Its volume is that of its mass: strains hold errors of the projection, which would add up.
+      for (std::uint32_t p = batch.begin; p < batch.end; ++p) volume[p] = mass[p] / density;
+    } else if (space.saturated) {
+      const double grains = density / (1 - space.porosity);  // their density
+      for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
+        const double n = 1 - solid[p] / (grains * volume[p]);
+        porosity[p] = n;
+        mass[p] = solid[p] + wet[p] * n * water_.density * volume[p];
+      }
+    }
+  }
+}
+
+template <int Dim>
+void PoreWater<Dim>::compress(Scene<Dim>& scene, const ParticleBlock<Dim>& block, const double* solid,
+                              const double* relative, double dt) {
+  Columns& columns = scene.particles.columns;
+  double* pressure = columns.data(pressure_);
+  const double* porosity = columns.data(porosity_);
+  const double* wet = columns.data(wet_);
+  const double stiffness = 1 / water_.compressibility();
+  for (std::uint32_t p = block.begin; p < block.end; ++p)
+    if (wet[p] != 0) pressure[p] -= dt * stiffness / porosity[p] * (solid[p] + porosity[p] * relative[p]);
+}
+
+template <int Dim>
+double PoreWater<Dim>::fastest_sound(const Particles& particles) const {
+  const Columns& columns = particles.columns;
+  double fastest = 0;
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    double modulus = materials_[static_cast<std::size_t>(particles.material[p])].elasticity().constrained_modulus();
+    if (columns.data(wet_)[p] != 0) modulus += 1 / (water_.compressibility() * columns.data(porosity_)[p]);
+    fastest = std::max(fastest, modulus * columns.data(particles.volume)[p] / columns.data(particles.mass)[p]);
+  }
+  return std::sqrt(fastest);
+}
+
+template <int Dim>
+double PoreWater<Dim>::compression_energy(const Particles& particles) const {
+  const double compressibility = water_.compressibility();
+  const Columns& columns = particles.columns;
+  double sum = 0;
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const double pressure = columns.data(pressure_)[p];
+    sum += 0.5 * columns.data(particles.volume)[p] * columns.data(porosity_)[p] * compressibility * pressure * pressure;
+  }
+  return sum;
+}
+
+template <int Dim>
+double PoreWater<Dim>::water_volume(const Particles& particles) const {
+  const Columns& columns = particles.columns;
+  double sum = 0;
+  for (std::size_t p = 0; p < particles.size(); ++p)
+    sum += columns.data(particles.volume)[p] * columns.data(porosity_)[p] * columns.data(wet_)[p];
+  return sum;
+}
+
+template class PoreWater<2>;
+template class PoreWater<3>;
+
+}  // namespace sluice

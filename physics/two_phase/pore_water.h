@@ -1,0 +1,107 @@
+/// PoreWater: the water that particles hold, and what they tell the nodes, cells and vertices of it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/simulation/stages.h"
+#include "physics/initial_stress/initial_stress.h"
+#include "physics/loads/external_pressure.h"
+#include "physics/materials/materials.h"
+#include "physics/two_phase/pressure_equation.h"
+#include "physics/two_phase/water.h"
+
+namespace sluice {
+
+/// Permeabilities are given for this gravity, whatever the gravity of the case is (a centrifuge) [m/s2].
+inline constexpr double standard_gravity = 9.81;
+
+template <int Dim>
+class PoreWater {
+ public:
+  PoreWater(const WaterCase& water, std::vector<PoreSpace> spaces, const Materials<Dim>& materials);
+
+  void declare(Particles& particles, bool with_body_force);
+  /// Sets porosity, masses and which particles hold water, from the table and the materials.
+  void fill(Scene<Dim>& scene);
+
+  /// The pore pressure at the start, where it needs no solution.
+  void set_initial_pressure(Scene<Dim>& scene);
+
+  /// What pore pressure and outside pressure do to the skeleton.
+  SkeletonLoads<Dim> skeleton_loads(Scene<Dim>& scene, const ExternalPressure<Dim>& outside,
+                                    std::vector<Workspace<Dim>>& workspaces);
+
+  const std::vector<PoreSpace>& spaces() const { return spaces_; }
+  ColumnId inertia() const { return inertia_; }
+  ColumnId pressure() const { return pressure_; }
+  ColumnId pressure_gradient() const { return pressure_gradient_; }
+  ColumnId divergence() const { return divergence_; }
+  ColumnId acceleration() const { return acceleration_; }
+  ColumnId porosity() const { return porosity_; }
+  ColumnId wet() const { return wet_; }
+  bool any_liquid() const;
+
+  /// Which blocks hold water.
+  std::vector<char> wet_blocks(const Scene<Dim>& scene) const;
+
+  /// Forces on the nodes from the total stress sigma' - beta p, from outside pressure and its gradient.
+  void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile, double increment,
+                      const ExternalPressure<Dim>& outside);
+
+  /// Particles of a block to its cells and vertices: eqs. (43)-(47). The nodes have the velocities of the predictor.
+  /// `relative` holds the velocities of the water relative to the solid, or nulls where it has no inertia of its own.
+  /// Returns the power that the flow through the pores dissipates [W].
+  double collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work, double kick,
+                 const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
+
+  /// The same for all blocks, with soil and water at rest.
+  void collect_at_rest(Scene<Dim>& scene, PressureEquation<Dim>& equation);
+  /// Particles whose pressure, as taken, is not positive hold no water.
+  void dry_above_zero_pressure(Scene<Dim>& scene);
+
+  /// The new pressure from the vertices, and the forces of what it adds to the old one.
+  void correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
+               double increment, const PressureEquation<Dim>& equation);
+  /// Forces of the new pressure alone, to the force tile of `nodes`; after `correct`.
+  void scatter_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
+                        const ExternalPressure<Dim>& outside, NodeFields<Dim>& nodes);
+  /// Pressure and its gradient at the particles, without forces: at the start.
+  void take_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
+                     const PressureEquation<Dim>& equation);
+
+  /// p -= dt (div v + n div r) K_w / n, eq. (55); `divergence` of v and r by particle [1/s].
+  void compress(Scene<Dim>& scene, const ParticleBlock<Dim>& block, const double* solid, const double* relative,
+                double dt);
+
+  /// Porosity and masses from the volumes, eq. (50).
+  void follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& block);
+
+  /// Largest speed of sound in soil whose water moves with it, sqrt((M + K_w / n) / rho) [m/s].
+  double fastest_sound(const Particles& particles) const;
+
+  /// Energy stored in the compressed water, and its volume [J], [m3].
+  double compression_energy(const Particles& particles) const;
+  double water_volume(const Particles& particles) const;
+
+  /// k / gamma_w along each axis [m2/(Pa s)] of a material at a porosity.
+  std::array<double, Dim> mobility(const PoreSpace& space, double porosity) const;
+
+ private:
+  void take_outside_pressure(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
+                             const ExternalPressure<Dim>& outside);
+  double sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
+             const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
+  void zero_forces(const Scene<Dim>& scene, Lane* tile) const;
+
+  const WaterCase& water_;
+  std::vector<PoreSpace> spaces_;
+  const Materials<Dim>& materials_;
+  std::unique_ptr<ShapeKernels<Dim>> linear_;
+
+  ColumnId pressure_, pressure_gradient_, porosity_, solid_mass_, inertia_, wet_;         // state
+  ColumnId wet_volume_, divergence_, acceleration_, new_pressure_, total_stress_, zero_;  // derived
+  ColumnId outside_pressure_, body_force_;
+};
+
+}  // namespace sluice

@@ -1,0 +1,416 @@
+#include "physics/two_phase/pressure_equation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/case/case_schema.h"
+#include "core/parallel/parallel.h"
+#include "physics/two_phase/steady_seepage.h"
+
+namespace sluice {
+
+namespace {
+
+/// A cell with less water than this has no coefficients of its own.
+constexpr double least_fill = 0.05;
+/// The surface is not found nearer to a vertex than this, in cells: keeps the system well conditioned.
+constexpr double least_share = 0.05;
+/// Volume that may go astray in a cell in a step, as share of the cell.
+constexpr double volume_tolerance = 1e-9;
+constexpr std::size_t items_a_share = 256;
+
+/// Calls body(i) for i < count in parallel, in shares of many items.
+template <class Body>
+void parallel_shares(std::size_t count, const Body& body) {
+  parallel_for((count + items_a_share - 1) / items_a_share, [&](std::size_t share) {
+    const std::size_t end = std::min(count, (share + 1) * items_a_share);
+    for (std::size_t i = share * items_a_share; i < end; ++i) body(i);
+  });
+}
+
+}  // namespace
+
+template <int Dim>
+PressureEquation<Dim>::PressureEquation(const WaterCase& water, const GridGeometry<Dim>& grid, double gravity)
+    : water_(water), geometry_(grid), unit_weight_(-water.density * gravity), integrals_(grid), solver_(water.solver) {
+  const auto names = face_words(Dim);
+  for (std::size_t f = 0; f < names.size(); ++f) {
+    const auto found = water.faces.find(names[f]);
+    if (found != water.faces.end()) faces_[f] = &found->second;
+  }
+}
+
+// ---- which cells take part ----
+
+template <int Dim>
+void PressureEquation<Dim>::prepare(const Scene<Dim>& scene, const std::vector<char>& wet) {
+  wet_ = wet;
+  const std::size_t blocks = scene.blocks.particle_blocks().size();
+  cell_sums_.resize(blocks * Grid::cell_tile);
+  vertex_tiles_.resize(blocks * Grid::vertex_tile);
+  if (!grid_.empty()) grid_.locate(scene.blocks);
+}
+
+/// Whether all cells with water are in the set.
+template <int Dim>
+bool PressureEquation<Dim>::covered(const Scene<Dim>& scene) const {
+  if (grid_.empty()) return false;
+  for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b) {
+    if (!is_wet(b)) continue;
+    const std::int32_t* const cell = grid_.cells_of_tile(b);
+    for (std::size_t n = 0; n < Grid::cell_tile; ++n)
+      if (cell[n] < 0 && cell_sums_[b * Grid::cell_tile + n].volume > 0) return false;
+  }
+  return true;
+}
+
+template <int Dim>
+void PressureEquation<Dim>::rebuild(const Scene<Dim>& scene) {
+  std::vector<Index<Dim>> places;
+  for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b) {
+    if (!is_wet(b)) continue;
+    for (std::size_t n = 0; n < Grid::cell_tile; ++n) {
+      if (!(cell_sums_[b * Grid::cell_tile + n].volume > 0)) continue;
+      Index<Dim> place = scene.blocks.particle_blocks()[b].first_cell;
+      for (int a = 0, rest = static_cast<int>(n); a < Dim; ++a, rest /= Grid::cell_tile_width)
+        place[a] += rest % Grid::cell_tile_width - tile_margin;
+      places.push_back(place);
+    }
+  }
+  if (places.empty()) return;
+  build(places);
+  grid_.locate(scene.blocks);
+}
+
+template <int Dim>
+void PressureEquation<Dim>::build(const std::vector<Index<Dim>>& wet_cells) {
+  built_from_ = wet_cells;
+  grid_.build(wet_cells, geometry_);
+  const auto lattice = grid_.places();
+  solver_.analyze(grid_.pattern(), nested_dissection<Dim>(lattice));
+}
+
+template <int Dim>
+void PressureEquation<Dim>::store(Archive& archive) const {
+  auto& cells = archive.integers["pressure_cells"];
+  for (const auto& place : built_from_) cells.insert(cells.end(), place.begin(), place.end());
+  const auto state = solver_.state();
+  archive.reals["pressure_factorized"] = state.factorized_values;
+  archive.reals["pressure_counters"] = state.counters;
+}
+
+template <int Dim>
+void PressureEquation<Dim>::restore(const Archive& archive) {
+  const auto& cells = archive.integers.at("pressure_cells");
+  std::vector<Index<Dim>> places(cells.size() / Dim);
+  for (std::size_t i = 0; i < cells.size(); ++i) places[i / Dim][i % Dim] = static_cast<int>(cells[i]);
+  if (places.empty()) return;
+  build(places);
+  solver_.restore({archive.reals.at("pressure_factorized"), archive.reals.at("pressure_counters")});
+}
+
+/// Sums of cells and vertices over the tiles, in the order of the blocks.
+template <int Dim>
+void PressureEquation<Dim>::sum_tiles() {
+  sums_.resize(grid_.cells().size());
+  parallel_shares(sums_.size(), [&](std::size_t c) {
+    CellSums<Dim> sum;
+    for (const std::int32_t entry : grid_.cell_entries(c)) {
+      const auto at = static_cast<std::size_t>(entry);
+      if (entry >= 0 && is_wet(at / Grid::cell_tile)) sum.add(cell_sums_[at]);
+    }
+    sums_[c] = sum;
+  });
+  lanes_.resize(grid_.vertices().size());
+  parallel_shares(lanes_.size(), [&](std::size_t v) {
+    Lane sum{};
+    for (const std::int32_t entry : grid_.vertex_entries(v)) {
+      const auto at = static_cast<std::size_t>(entry);
+      if (entry >= 0 && is_wet(at / Grid::vertex_tile)) sum += vertex_tiles_.data()[at];
+    }
+    lanes_[v] = sum;
+  });
+}
+
+// ---- coefficients ----
+
+/// Eqs. (44) and (47): what multiplies the Laplacian of the new and of the old pressure.
+template <int Dim>
+typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(const CellSums<Dim>& sums,
+                                                                            const PressureStep& step) const {
+  CellState cell;
+  if (!(sums.volume > 0)) return cell;
+  const double inverse = 1 / sums.volume, specific = sums.inverse_density * inverse;
+  const double lightness = water_.density * specific;  // rho_w / rho
+  cell.storage = sums.storage * inverse / step.dt;
+  const double compliance = step.stabilised ? sums.compliance * inverse : 0;
+  for (int a = 0; a < Dim; ++a) {
+    const double h = geometry_.cell[a], mobility = sums.mobility[a] * inverse;
+    const double projection = step.kick * specific + mobility * (1 - lightness);
+    // At most as soft as a skeleton in which an elastic wave crosses a fiftieth of a cell.
+    const double softest = 2500 * step.dt * step.dt * specific / (h * h);
+    const double wanted = h * h * std::min(compliance, softest) / (4 * step.dt);
+    // The acceleration in Darcy's law holds the old pressure; explicitly, that is unstable where rho < 2 rho_w and the
+    // soil is coarse.
+    const double lagged = (lightness - 0.4) * mobility - step.kick * specific;
+    const double stabilisation = std::max({0.0, wanted - projection, lagged});
+    cell.implicit[a] = projection + stabilisation;
+    cell.old[a] = step.increment * (projection - mobility) + stabilisation;
+    cell.push[a] = sums.push[a] * inverse;
+  }
+  return cell;
+}
+
+/// A cell with little or no water beside a vertex that is inside takes the coefficients of the cells around it.
+template <int Dim>
+void PressureEquation<Dim>::set_cells(const PressureStep& step) {
+  const double least = least_fill * geometry_.cell_volume();
+  cells_.resize(sums_.size());
+  parallel_shares(cells_.size(), [&](std::size_t c) {
+    CellSums<Dim> sums = sums_[c];
+    if (sums.volume < least)
+      for (const std::int32_t v : grid_.cells()[c].vertex)
+        for (const std::int32_t other : grid_.vertices()[static_cast<std::size_t>(v)].cell)
+          if (other >= 0) sums.add(sums_[static_cast<std::size_t>(other)]);
+    cells_[c] = cell_state(sums, step);
+  });
+}
+
+// ---- kinds of vertices ----
+
+template <int Dim>
+bool PressureEquation<Dim>::on_face(const Index<Dim>& place, int axis, int side) const {
+  return place[axis] == (side == 0 ? 0 : geometry_.cells[axis]);
+}
+
+template <int Dim>
+Vector<Dim> PressureEquation<Dim>::position(const Index<Dim>& place) const {
+  Vector<Dim> x;
+  for (int a = 0; a < Dim; ++a) x[a] = geometry_.min[a] + place[a] * geometry_.cell[a];
+  return x;
+}
+
+/// Inside is a vertex more than half of whose surroundings, in the grid, are wet: on a flat surface, that lies below
+/// it.
+template <int Dim>
+void PressureEquation<Dim>::classify(const PressureStep& step) {
+  const std::size_t count = grid_.vertices().size();
+  const double g = unit_weight_;
+  fill_.resize(count), kind_.resize(count), given_.resize(count), old_.resize(count), pressure_.resize(count);
+  parallel_shares(count, [&](std::size_t v) {
+    const auto& vertex = grid_.vertices()[v];
+    const double volume = lanes_[v][0];
+    fill_[v] = volume / (vertex.share * geometry_.cell_volume());
+    kind_[v] = fill_[v] > 0.5 + 1e-6 ? Kind::inside : Kind::outside;
+    old_[v] = volume > 0 ? lanes_[v][1] / volume : 0;
+    if (kind_[v] == Kind::outside) return;
+    for (int a = 0; a < Dim; ++a)
+      for (int side = 0; side < 2; ++side) {
+        const WaterFace* const face = faces_[static_cast<std::size_t>(2 * a + side)];
+        if (face == nullptr || !on_face(vertex.place, a, side)) continue;
+        const double head = face->head ? face->head->at(step.time) - position(vertex.place)[Dim - 1] : 0;
+        // Above its level, water leaves through the face where it has pressure: a seepage face.
+        const bool seeps = face->head && head <= 0 && old_[v] > 0;
+        if (face->pressure || head > 0 || seeps) {
+          kind_[v] = Kind::given;
+          given_[v] = face->pressure ? face->pressure->at(step.time) : g * std::max(0.0, head);
+        }
+      }
+  });
+}
+
+// ---- the system ----
+
+template <int Dim>
+typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Grid::Vertex& vertex) const {
+  Row row;
+  for (std::size_t k = 0; k < Grid::corners; ++k) {
+    if (vertex.cell[k] < 0) continue;
+    const CellState& cell = cells_[static_cast<std::size_t>(vertex.cell[k])];
+    const std::size_t m = Grid::corners - 1 - k;
+    row.storage += cell.storage * geometry_.cell_volume() / Grid::corners;
+    for (std::size_t a = 0; a < Dim; ++a) row.push += integrals_.slope[a][m] * cell.push[a];
+    for (std::size_t n = 0; n < Grid::corners; ++n) {
+      std::size_t place = 0;
+      for (int a = Dim - 1; a >= 0; --a) place = 3 * place + 1 + (n >> a & 1) - (m >> a & 1);
+      for (std::size_t a = 0; a < Dim; ++a) {
+        row.implicit[place] += cell.implicit[a] * integrals_.laplacian[a][m][n];
+        row.old[place] += cell.old[a] * integrals_.laplacian[a][m][n];
+      }
+    }
+  }
+  return row;
+}
+
+/// Where the fill passes one half between two vertices, linearly.
+template <int Dim>
+typename PressureEquation<Dim>::Crossing PressureEquation<Dim>::crossing(std::size_t inside, std::size_t neighbour,
+                                                                         const ExternalPressure<Dim>& outside,
+                                                                         double time) const {
+  const double drop = fill_[inside] - fill_[neighbour];
+  const double share = std::clamp((fill_[inside] - 0.5) / drop, least_share, 1.0);
+  if (!outside.any()) return {share, 0};
+  const Vector<Dim> from = position(grid_.vertices()[inside].place), to = position(grid_.vertices()[neighbour].place);
+  Vector<Dim> x;
+  for (int a = 0; a < Dim; ++a) x[a] = from[a] + share * (to[a] - from[a]);
+  return {share, outside.of_ponds(x, time)};
+}
+
+/// Water that leaves through faces with a prescribed flux at a vertex [m3/s].
+template <int Dim>
+double PressureEquation<Dim>::face_flux(const typename Grid::Vertex& vertex, double time) const {
+  double flux = 0;
+  for (int a = 0; a < Dim; ++a)
+    for (int side = 0; side < 2; ++side) {
+      const WaterFace* const face = faces_[static_cast<std::size_t>(2 * a + side)];
+      if (face == nullptr || !face->flux || !on_face(vertex.place, a, side)) continue;
+      const double area = 2 * vertex.share * geometry_.cell_volume() / geometry_.cell[a];
+      flux += face->flux->at(time) * area;
+    }
+  return flux;
+}
+
+/// Eq. (46). A line that leaves the water is continued to the vertex outside by the straight line through the surface
+/// (Gibou et al. 2002): it changes the diagonal only, so the matrix stays symmetric.
+template <int Dim>
+void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside,
+                                      double time) {
+  const auto& vertex = grid_.vertices()[i];
+  double diagonal = row.implicit[Grid::centre] + row.storage;
+  double right = row.push - face_flux(vertex, time) + (row.old[Grid::centre] + row.storage) * old_[i];
+  // The particles fill the surroundings of the vertex in part only; the equation is that of the whole.
+  right -= lanes_[i][2] / fill_[i];
+  for (std::size_t n = 0; n < Grid::stencil; ++n) {
+    if (n == Grid::centre || vertex.neighbour[n] < 0) continue;
+    const auto j = static_cast<std::size_t>(vertex.neighbour[n]);
+    const std::int32_t slot = vertex.slot[n];
+    if (kind_[j] == Kind::inside) {
+      if (slot >= 0) values_[static_cast<std::size_t>(slot)] = row.implicit[n];
+      right += row.old[n] * old_[j];
+      continue;
+    }
+    if (slot >= 0) values_[static_cast<std::size_t>(slot)] = 0;
+    if (kind_[j] == Kind::given) {
+      right += row.old[n] * old_[j] - row.implicit[n] * given_[j];
+      continue;
+    }
+    const Crossing c = crossing(i, j, outside, time);
+    // With unequal permeabilities some couplings are positive; continuing those would take from the diagonal.
+    const double share = row.implicit[n] < 0 ? c.share : 1;
+    diagonal += row.implicit[n] * (1 - 1 / share);
+    right += row.old[n] * (old_[i] * (1 - 1 / share) + c.pressure / share) - row.implicit[n] * c.pressure / share;
+  }
+  values_[static_cast<std::size_t>(vertex.slot[Grid::centre])] = diagonal;
+  right_side_[i] = right;
+}
+
+template <int Dim>
+void PressureEquation<Dim>::assemble(const ExternalPressure<Dim>& outside, const PressureStep& step) {
+  const std::size_t count = grid_.vertices().size();
+  values_.resize(grid_.pattern().row.size());
+  right_side_.resize(count);
+  parallel_shares(count, [&](std::size_t i) {
+    const auto& vertex = grid_.vertices()[i];
+    const Row own = row(vertex);
+    if (kind_[i] == Kind::inside) {
+      write_row(i, own, outside, step.time);
+      return;
+    }
+    // An equation of its own, of about the size of the others.
+    for (const std::int32_t slot : vertex.slot)
+      if (slot >= 0) values_[static_cast<std::size_t>(slot)] = 0;
+    const double diagonal = own.implicit[Grid::centre] > 0 ? own.implicit[Grid::centre] : 1;
+    values_[static_cast<std::size_t>(vertex.slot[Grid::centre])] = diagonal;
+    right_side_[i] = kind_[i] == Kind::given ? diagonal * given_[i] : 0;
+  });
+}
+
+template <int Dim>
+void PressureEquation<Dim>::explain(const NotPositiveDefinite& error) const {
+  const Vector<Dim> x = position(grid_.vertices()[static_cast<std::size_t>(error.column())].place);
+  std::string where = fmt::format("{:.4g}", x[0]);
+  for (int a = 1; a < Dim; ++a) where += fmt::format(", {:.4g}", x[a]);
+  throw CaseError(
+      fmt::format("the pore pressure around ({}) m is not determined: this water is incompressible and closed in, with "
+                  "no drained face and no free surface; give the water a bulk_modulus, or drain it",
+                  where));
+}
+
+template <int Dim>
+void PressureEquation<Dim>::solve_system(double dt) {
+  const double largest = volume_tolerance * geometry_.cell_volume() / dt;
+  try {
+    report_ = solver_.solve(values_, right_side_, pressure_, largest);
+  } catch (const NotPositiveDefinite& error) {
+    explain(error);
+  }
+}
+
+template <int Dim>
+void PressureEquation<Dim>::solve(Scene<Dim>& scene, const ExternalPressure<Dim>& outside, const PressureStep& step) {
+  {
+    const auto timing = scene.clock.time(Stage::pressure_assembly);
+    if (!covered(scene)) rebuild(scene);
+    if (grid_.empty()) return;
+    sum_tiles();
+    set_cells(step);
+    classify(step);
+    assemble(outside, step);
+  }
+  const auto timing = scene.clock.time(Stage::pressure_solve);
+  for (std::size_t v = 0; v < pressure_.size(); ++v)
+    pressure_[v] = kind_[v] == Kind::inside ? old_[v] : kind_[v] == Kind::given ? given_[v] : 0;
+  solve_system(step.dt);
+  extrapolate(outside, step.time);
+}
+
+/// Vertices outside continue the pressure through the surface, the mean over the lines that reach them: along axes
+/// where there are such, else across.
+template <int Dim>
+void PressureEquation<Dim>::extrapolate(const ExternalPressure<Dim>& outside, double time) {
+  parallel_shares(kind_.size(), [&](std::size_t j) {
+    if (kind_[j] != Kind::outside) return;
+    double sum = 0, weight = 0;
+    const auto& vertex = grid_.vertices()[j];
+    for (std::size_t n = 0; n < Grid::stencil; ++n) {
+      if (vertex.neighbour[n] < 0) continue;
+      const auto i = static_cast<std::size_t>(vertex.neighbour[n]);
+      if (kind_[i] != Kind::inside) continue;
+      int steps = 0;
+      for (int a = 0, rest = static_cast<int>(n); a < Dim; ++a, rest /= 3) steps += rest % 3 != 1 ? 1 : 0;
+      const double own = steps == 1 ? 1 : 1e-9;
+      const Crossing c = crossing(i, j, outside, time);
+      sum += own * (pressure_[i] * (1 - 1 / c.share) + c.pressure / c.share);
+      weight += own;
+    }
+    pressure_[j] = weight > 0 ? sum / weight : outside.of_ponds(position(vertex.place), time);
+  });
+}
+
+template <int Dim>
+double PressureEquation<Dim>::solve_steady(Scene<Dim>& scene, const ExternalPressure<Dim>& outside) {
+  if (!covered(scene)) rebuild(scene);
+  if (grid_.empty()) return 0;
+  sum_tiles();
+  SteadySeepage found = solve_steady_seepage(grid_, sums_, geometry_, water_, outside, unit_weight_, scene.time);
+  pressure_ = std::move(found.pressure);
+  return found.discharge;
+}
+
+template <int Dim>
+void PressureEquation<Dim>::load(std::size_t block, Lane* tile) const {
+  if (grid_.empty()) {
+    std::fill_n(tile, Grid::vertex_tile * motion_lanes<Dim>, Lane{});
+    return;
+  }
+  const std::int32_t* const vertex = grid_.vertices_of_tile(block);
+  for (std::size_t n = 0; n < Grid::vertex_tile; ++n)
+    tile[n * motion_lanes<Dim>] = Lane{vertex[n] >= 0 ? pressure_[static_cast<std::size_t>(vertex[n])] : 0, 0, 0, 0};
+}
+
+template class PressureEquation<2>;
+template class PressureEquation<3>;
+
+}  // namespace sluice

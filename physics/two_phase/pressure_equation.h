@@ -1,0 +1,151 @@
+/// PressureEquation: the balance of volume of soil and water at the vertices of cells, solved for the pressure at the
+/// end of the step. docs/theory.md, section 9, eqs. (40)-(49).
+///
+/// A step uses it so:
+///   prepare(scene)                                  which cells and vertices take part
+///   collect: in parallel over blocks, each fills its cell_sums(b) and vertex_tile(b)
+///   solve(...)                                      assembles, imposes boundaries, solves, extrapolates
+///   load(b, tile)                                   the new pressure, for a gather with linear shape functions
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/output/archive.h"
+#include "core/simulation/scene.h"
+#include "physics/loads/external_pressure.h"
+#include "physics/two_phase/corner_integrals.h"
+#include "physics/two_phase/pressure_grid.h"
+#include "physics/two_phase/water.h"
+#include "solvers/lagged_cholesky.h"
+
+namespace sluice {
+
+/// Sums over the wet particles of a cell, each weighted with the volume.
+template <int Dim>
+struct CellSums {
+  double volume = 0;                   ///< [m3]
+  double inverse_density = 0;          ///< of 1 / rho, rho that of soil with water
+  double compliance = 0;               ///< of 1 / M, M the constrained modulus of the skeleton; 0 without one
+  double storage = 0;                  ///< of n / K_w
+  std::array<double, Dim> mobility{};  ///< of K = k / gamma_w and the like [m2/(Pa s)], along each axis
+  std::array<double, Dim> push{};      ///< of K rho_w (b - a) and the like: what drives water but the pressure [m/s]
+
+  void add(const CellSums& other) {
+    volume += other.volume;
+    inverse_density += other.inverse_density;
+    compliance += other.compliance;
+    storage += other.storage;
+    for (std::size_t a = 0; a < Dim; ++a) mobility[a] += other.mobility[a], push[a] += other.push[a];
+  }
+};
+
+/// What the pressure has to do in a step.
+struct PressureStep {
+  double dt;         ///< time over which volume is balanced [s]
+  double kick;       ///< time over which the pressure accelerates [s]
+  double time;       ///< at the end of the step [s]
+  double increment;  ///< beta: share of the old pressure that has acted already
+  bool stabilised;
+};
+
+template <int Dim>
+class PressureEquation {
+ public:
+  /// `gravity` is the component along the last axis [m/s2].
+  PressureEquation(const WaterCase& water, const GridGeometry<Dim>& grid, double gravity);
+
+  /// After blocks have changed: finds again where everything is. `wet` says which blocks hold water.
+  void prepare(const Scene<Dim>& scene, const std::vector<char>& wet);
+  bool is_wet(std::size_t block) const { return wet_[block] != 0; }
+
+  CellSums<Dim>* cell_sums(std::size_t block) { return cell_sums_.data() + block * PressureGrid<Dim>::cell_tile; }
+  /// Lanes {V, V p, V div v, …} of linear shape functions.
+  Lane* vertex_tile(std::size_t block) { return vertex_tiles_.data() + block * PressureGrid<Dim>::vertex_tile; }
+
+  /// Throws CaseError if nothing holds the pressure of a closed region of incompressible water.
+  void solve(Scene<Dim>& scene, const ExternalPressure<Dim>& outside, const PressureStep& step);
+
+  /// The pressure of steady seepage, from sums collected at rest; returns the discharge [m3/s].
+  double solve_steady(Scene<Dim>& scene, const ExternalPressure<Dim>& outside);
+
+  /// Fills a tile of motion lanes with the pressure.
+  void load(std::size_t block, Lane* tile) const;
+
+  /// Of the last step.
+  const LaggedCholesky::Report& report() const { return report_; }
+  const LaggedCholeskyStatistics& statistics() const { return solver_.statistics(); }
+  std::size_t unknowns() const { return grid_.vertices().size(); }
+
+  void store(Archive& archive) const;
+  void restore(const Archive& archive);
+
+ private:
+  using Grid = PressureGrid<Dim>;
+  enum class Kind : char { outside, inside, given };
+
+  /// Coefficients of one cell.
+  struct CellState {
+    std::array<double, Dim> implicit{};  ///< of the new pressure [m2/(Pa s)]
+    std::array<double, Dim> old{};       ///< of the old pressure
+    std::array<double, Dim> push{};
+    double storage = 0;  ///< per time [1/(Pa s)]
+  };
+  /// Couplings of a vertex with those around it.
+  struct Row {
+    std::array<double, Grid::stencil> implicit{}, old{};
+    double storage = 0, push = 0;
+  };
+  /// A line from a vertex inside to one outside, and where it crosses the surface.
+  struct Crossing {
+    double share;     ///< of the line that is inside
+    double pressure;  ///< at the surface [Pa]
+  };
+
+  bool covered(const Scene<Dim>& scene) const;
+  void rebuild(const Scene<Dim>& scene);
+  void build(const std::vector<Index<Dim>>& wet_cells);
+  void sum_tiles();
+  void set_cells(const PressureStep& step);
+  CellState cell_state(const CellSums<Dim>& sums, const PressureStep& step) const;
+  void classify(const PressureStep& step);
+  bool on_face(const Index<Dim>& place, int axis, int side) const;
+  void assemble(const ExternalPressure<Dim>& outside, const PressureStep& step);
+  Row row(const typename Grid::Vertex& vertex) const;
+  void write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside, double time);
+  Crossing crossing(std::size_t inside, std::size_t neighbour, const ExternalPressure<Dim>& outside, double time) const;
+  double face_flux(const typename Grid::Vertex& vertex, double time) const;
+  Vector<Dim> position(const Index<Dim>& place) const;
+  void extrapolate(const ExternalPressure<Dim>& outside, double time);
+  void solve_system(double dt);
+  [[noreturn]] void explain(const NotPositiveDefinite& error) const;
+
+  const WaterCase& water_;
+  GridGeometry<Dim> geometry_;
+  double unit_weight_;  // of the water [N/m3]
+  CornerIntegrals<Dim> integrals_;
+  std::array<const WaterFace*, 2 * Dim> faces_{};  ///< null: impermeable
+
+  PressureGrid<Dim> grid_;
+  std::vector<Index<Dim>> built_from_;  // the wet cells of that time
+  LaggedCholesky solver_;
+  std::vector<char> wet_;  // by block
+  std::vector<CellSums<Dim>> cell_sums_;
+  LaneArray vertex_tiles_;
+
+  std::vector<CellSums<Dim>> sums_;     // by cell
+  std::vector<CellState> cells_;        // by cell
+  std::vector<Lane> lanes_;             // by vertex
+  std::vector<double> fill_;            // by vertex: share of its surroundings that is wet
+  std::vector<Kind> kind_;              // by vertex
+  std::vector<double> given_;           // by vertex [Pa]
+  std::vector<double> old_, pressure_;  // by vertex [Pa]
+  std::vector<double> values_, right_side_;
+  LaggedCholesky::Report report_;
+};
+
+extern template class PressureEquation<2>;
+extern template class PressureEquation<3>;
+
+}  // namespace sluice

@@ -1,0 +1,184 @@
+#include "physics/two_phase/pressure_grid.h"
+
+#include <algorithm>
+
+namespace sluice {
+
+namespace {
+
+constexpr int dilation = 2;  // cells beyond the wet ones
+
+/// Calls visit(place) for all places of a box, both ends included, first axis fastest.
+template <int Dim, class Visit>
+void for_box(const Index<Dim>& low, const Index<Dim>& high, const Visit& visit) {
+  Index<Dim> i = low;
+  for (int a = 0; a < Dim; ++a)
+    if (low[a] > high[a]) return;
+  for (;;) {
+    visit(i);
+    int a = 0;
+    while (a < Dim && i[a] == high[a]) {
+      i[a] = low[a];
+      ++a;
+    }
+    if (a == Dim) return;
+    ++i[a];
+  }
+}
+
+/// The place that lies `number`, in a box of `width` places an axis, from `origin`.
+template <int Dim>
+Index<Dim> place_in_box(const Index<Dim>& origin, int number, int width) {
+  Index<Dim> place;
+  for (int a = 0; a < Dim; ++a, number /= width) place[a] = origin[a] + number % width;
+  return place;
+}
+
+template <int Dim>
+Index<Dim> moved(Index<Dim> place, int by) {
+  for (int& i : place) i += by;
+  return place;
+}
+
+}  // namespace
+
+template <int Dim>
+void PressureGrid<Dim>::Numbers::cover(const Index<Dim>& low, const Index<Dim>& high) {
+  low_ = low;
+  high_ = high;
+  std::size_t size = 1;
+  for (int a = 0; a < Dim; ++a) size *= static_cast<std::size_t>(high[a] - low[a] + 1);
+  number_.assign(size, -1);
+}
+
+template <int Dim>
+std::size_t PressureGrid<Dim>::Numbers::position(const Index<Dim>& place) const {
+  std::size_t position = 0;
+  for (int a = Dim - 1; a >= 0; --a)
+    position =
+        position * static_cast<std::size_t>(high_[a] - low_[a] + 1) + static_cast<std::size_t>(place[a] - low_[a]);
+  return position;
+}
+
+template <int Dim>
+std::int32_t PressureGrid<Dim>::Numbers::find(const Index<Dim>& place) const {
+  for (int a = 0; a < Dim; ++a)
+    if (place[a] < low_[a] || place[a] > high_[a]) return -1;
+  return number_[position(place)];
+}
+
+template <int Dim>
+void PressureGrid<Dim>::build(const std::vector<Index<Dim>>& wet, const GridGeometry<Dim>& grid) {
+  number_cells(wet, grid);
+  number_vertices();
+  link_vertices(grid);
+  make_pattern();
+}
+
+template <int Dim>
+void PressureGrid<Dim>::number_cells(const std::vector<Index<Dim>>& wet, const GridGeometry<Dim>& grid) {
+  Index<Dim> low = wet.front(), high = wet.front();
+  for (const auto& place : wet)
+    for (int a = 0; a < Dim; ++a) {
+      low[a] = std::min(low[a], std::max(0, place[a] - dilation));
+      high[a] = std::max(high[a], std::min(grid.cells[a] - 1, place[a] + dilation));
+    }
+  cell_numbers_.cover(low, high);
+  for (const auto& place : wet) {
+    Index<Dim> from = place, to = place;
+    for (int a = 0; a < Dim; ++a) {
+      from[a] = std::max(low[a], place[a] - dilation);
+      to[a] = std::min(high[a], place[a] + dilation);
+    }
+    for_box<Dim>(from, to, [&](const Index<Dim>& cell) { cell_numbers_.at(cell) = 0; });
+  }
+  cells_.clear();
+  for_box<Dim>(low, high, [&](const Index<Dim>& place) {
+    if (cell_numbers_.at(place) < 0) return;
+    cell_numbers_.at(place) = static_cast<std::int32_t>(cells_.size());
+    cells_.push_back({place, {}});
+  });
+}
+
+template <int Dim>
+void PressureGrid<Dim>::number_vertices() {
+  vertex_numbers_.cover(cell_numbers_.low(), moved<Dim>(cell_numbers_.high(), 1));
+  for (const Cell& cell : cells_)
+    for (int k = 0; k < corners; ++k) vertex_numbers_.at(place_in_box<Dim>(cell.place, k, 2)) = 0;
+  vertices_.clear();
+  for_box<Dim>(vertex_numbers_.low(), vertex_numbers_.high(), [&](const Index<Dim>& place) {
+    if (vertex_numbers_.at(place) < 0) return;
+    vertex_numbers_.at(place) = static_cast<std::int32_t>(vertices_.size());
+    vertices_.push_back({place, {}, {}, {}, 1});
+  });
+  for (Cell& cell : cells_)
+    for (int k = 0; k < corners; ++k)
+      cell.vertex[static_cast<std::size_t>(k)] = vertex_numbers_.at(place_in_box<Dim>(cell.place, k, 2));
+}
+
+template <int Dim>
+void PressureGrid<Dim>::link_vertices(const GridGeometry<Dim>& grid) {
+  for (Vertex& vertex : vertices_) {
+    for (int k = 0; k < corners; ++k)
+      vertex.cell[static_cast<std::size_t>(k)] =
+          cell_numbers_.find(place_in_box<Dim>(moved<Dim>(vertex.place, -1), k, 2));
+    for (int n = 0; n < stencil; ++n)
+      vertex.neighbour[static_cast<std::size_t>(n)] =
+          vertex_numbers_.find(place_in_box<Dim>(moved<Dim>(vertex.place, -1), n, 3));
+    vertex.share = 1;
+    for (int a = 0; a < Dim; ++a)
+      if (vertex.place[a] == 0 || vertex.place[a] == grid.cells[a]) vertex.share *= 0.5;
+  }
+}
+
+/// Columns by number; rows ascend because neighbours are numbered in the order of the stencil.
+template <int Dim>
+void PressureGrid<Dim>::make_pattern() {
+  pattern_ = {};
+  pattern_.column_begin.push_back(0);
+  for (Vertex& vertex : vertices_) {
+    vertex.slot.fill(-1);
+    for (std::size_t n = centre; n < stencil; ++n) {
+      if (vertex.neighbour[n] < 0) continue;
+      vertex.slot[n] = static_cast<std::int32_t>(pattern_.row.size());
+      pattern_.row.push_back(vertex.neighbour[n]);
+    }
+    pattern_.column_begin.push_back(static_cast<int>(pattern_.row.size()));
+  }
+}
+
+template <int Dim>
+void PressureGrid<Dim>::locate(const Blocks<Dim>& blocks) {
+  const auto link = [&](const Numbers& numbers, int width, std::size_t tile, std::size_t count,
+                        std::vector<std::int32_t>& tiles, std::vector<Entries>& entries) {
+    Entries none;
+    none.fill(-1);
+    entries.assign(count, none);
+    tiles.assign(blocks.particle_blocks().size() * tile, -1);
+    for (std::size_t b = 0; b < blocks.particle_blocks().size(); ++b) {
+      const Index<Dim> origin = moved<Dim>(blocks.particle_blocks()[b].first_cell, -tile_margin);
+      for (std::size_t n = 0; n < tile; ++n) {
+        const std::int32_t number = numbers.find(place_in_box<Dim>(origin, static_cast<int>(n), width));
+        const std::size_t at = b * tile + n;
+        tiles[at] = number;
+        if (number < 0) continue;
+        auto& own = entries[static_cast<std::size_t>(number)];
+        *std::find(own.begin(), own.end(), -1) = static_cast<std::int32_t>(at);
+      }
+    }
+  };
+  link(cell_numbers_, cell_tile_width, cell_tile, cells_.size(), tile_cells_, cell_entries_);
+  link(vertex_numbers_, tile_width<Dim>(1), vertex_tile, vertices_.size(), tile_vertices_, vertex_entries_);
+}
+
+template <int Dim>
+std::vector<std::array<int, Dim>> PressureGrid<Dim>::places() const {
+  std::vector<std::array<int, Dim>> places;
+  for (const Vertex& vertex : vertices_) places.push_back(vertex.place);
+  return places;
+}
+
+template class PressureGrid<2>;
+template class PressureGrid<3>;
+
+}  // namespace sluice

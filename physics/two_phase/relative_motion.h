@@ -1,0 +1,51 @@
+/// RelativeMotion: the velocity of the pore water relative to the solid, where it has an inertia of its own (v-w-p).
+/// Its drag is solved for at the nodes, in closed form. docs/theory.md, section 9, eqs. (51)-(54).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/simulation/stages.h"
+#include "physics/two_phase/pore_water.h"
+
+namespace sluice {
+
+template <int Dim>
+class RelativeMotion {
+ public:
+  RelativeMotion(const Case& definition, const WaterCase& water, PoreWater<Dim>& pores);
+
+  bool active() const { return active_; }
+  void declare(Particles& particles, bool affine);
+
+  /// Relative velocities of the particles; nulls where there are none.
+  std::array<const double*, Dim> velocity(const Particles& particles) const;
+
+  /// Particles to nodes: {m_w, m_w r}.
+  void scatter(Scene<Dim>& scene);
+  /// Sums them. With a projection, the nodes' velocity becomes that of the mixture, V = v + (m_w / m) r, until they are
+  /// corrected.
+  void collect(Scene<Dim>& scene);
+  /// The new relative velocity of the nodes from the new pressure; the nodes' velocity becomes that of the solid again.
+  void advance(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double kick);
+  /// `explicit`: the pressure of the particles from the divergences of the nodes' new velocities.
+  void compress(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt);
+  /// Nodes to particles.
+  void gather(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt);
+
+ private:
+  ScatterInput<Dim> water_input(Scene<Dim>& scene, const ParticleBlock<Dim>& block);
+  void set_drag(Scene<Dim>& scene, const ParticleBlock<Dim>& block);
+  void scatter_drag(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block);
+
+  const WaterCase& water_;
+  PoreWater<Dim>& pores_;
+  bool active_, projected_;
+  std::unique_ptr<Faces<Dim>> faces_;  // what they are to the water
+  NodeFields<Dim> nodes_;
+  std::vector<Lane> before_;  // {r} of the nodes at the beginning of the step, and the share m_w / m
+  ColumnId velocity_, affine_;
+  ColumnId water_mass_, drag_, drive_, scratch_, partial_stress_, relative_divergence_;
+};
+
+}  // namespace sluice

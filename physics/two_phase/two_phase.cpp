@@ -1,0 +1,284 @@
+#include "physics/two_phase/two_phase.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/simulation/energy.h"
+
+namespace sluice {
+
+namespace {
+
+template <int Dim>
+std::vector<bool> liquids(const Materials<Dim>& materials) {
+  std::vector<bool> liquid;
+  for (std::size_t m = 0; m < materials.size(); ++m) liquid.push_back(materials[m].liquid());
+  return liquid;
+}
+
+}  // namespace
+
+template <int Dim>
+TwoPhase<Dim>::TwoPhase(const Case& definition)
+    : water_(read_water(definition)),
+      initial_stress_(read_initial_stress(definition.initial_stress)),
+      loads_(read_surface_loads(definition.surface_loads)),
+      stress_(without_pores(definition)),
+      pores_(water_, read_pore_spaces(definition, liquids(stress_.materials())), stress_.materials()),
+      relative_(definition, water_, pores_),
+      outside_(loads_, water_.ponds, -water_.density * definition.gravity.back(), grid_of<Dim>(definition.grid)),
+      pressure_(water_, grid_of<Dim>(definition.grid), definition.gravity.back()) {
+  for (int a = 0; a < Dim; ++a) gravity_[a] = definition.gravity[static_cast<std::size_t>(a)];
+}
+
+template <int Dim>
+void TwoPhase<Dim>::declare(Particles& particles) {
+  pores_.declare(particles, outside_.any());
+  relative_.declare(particles, particles.columns.contains("affine_velocity"));
+  stress_.declare(particles.columns, pores_.inertia());
+}
+
+template <int Dim>
+double TwoPhase<Dim>::density(int material) const {
+  return stress_.materials()[static_cast<std::size_t>(material)].density();
+}
+
+// ---- the start ----
+
+template <int Dim>
+void TwoPhase<Dim>::initialise(Scene<Dim>& scene) {
+  pores_.fill(scene);
+  pores_.set_initial_pressure(scene);
+  if (water_.initial.method == InitialPressure::Method::steady_seepage) start_seepage(scene);
+  activate_blocks(scene);
+  apply_initial_stress(initial_stress_, scene, stress_.materials(),
+                       pores_.skeleton_loads(scene, outside_, stress_.workspaces()));
+  stress_.initialise(scene);
+}
+
+/// Steady seepage decides which part of the soil is wet, too.
+template <int Dim>
+void TwoPhase<Dim>::start_seepage(Scene<Dim>& scene) {
+  activate_blocks(scene);
+  pressure_.prepare(scene, pores_.wet_blocks(scene));
+  pores_.collect_at_rest(scene, pressure_);
+  discharge_ = pressure_.solve_steady(scene, outside_);
+  for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+    pores_.take_pressure(scene, b, block, work, pressure_);
+  });
+  pores_.dry_above_zero_pressure(scene);
+}
+
+// ---- the step ----
+
+template <int Dim>
+void TwoPhase<Dim>::step(Scene<Dim>& scene, double dt) {
+  if (activate_blocks(scene) || !placed_) pressure_.prepare(scene, pores_.wet_blocks(scene));
+  placed_ = true;
+  stress_.begin_step(scene);
+  if (water_.formulation == Formulation::explicit_)
+    step_explicit(scene, dt);
+  else
+    step_projected(scene, dt);
+  stress_.end_step(scene);
+}
+
+template <int Dim>
+void TwoPhase<Dim>::step_projected(Scene<Dim>& scene, double dt) {
+  const double kick = scene.kick(dt);
+  predict(scene, kick);
+  project(scene, dt, kick);
+  correct(scene, kick);
+  gather(scene, dt);
+}
+
+/// Nothing is solved for: the pressure follows from how the water was compressed, and limits the step.
+template <int Dim>
+void TwoPhase<Dim>::step_explicit(Scene<Dim>& scene, double dt) {
+  predict(scene, scene.kick(dt));
+  relative_.advance(scene, stress_.workspaces(), scene.kick(dt));
+  relative_.compress(scene, stress_.workspaces(), dt);
+  gather(scene, dt);
+}
+
+/// Velocities of the nodes under gravity, effective stress and the old pressure, eq. (41).
+template <int Dim>
+void TwoPhase<Dim>::predict(Scene<Dim>& scene, double kick) {
+  const auto forces = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
+    pores_.scatter_forces(scene, b, block, work.motion_tile.data(), water_.increment, outside_);
+  };
+  scatter(scene, ScatterWhat::momentum);
+  const bool stress_first = stress_.timing() == StressTiming::usf;
+  if (stress_first) {
+    velocity_from_momentum(scene);
+    stress_.update(scene, scene.previous_dt, forces);
+  } else {
+    const auto timing = scene.clock.time(Stage::scatter);
+    for_each_block(scene, stress_.workspaces(), forces);
+  }
+  advance_nodes(scene, kick, !stress_first, true);
+  if (!relative_.active()) return;
+  relative_.scatter(scene);
+  relative_.collect(scene);
+}
+
+/// The pressure that balances the volumes of soil and water at the end of the step, eq. (46).
+template <int Dim>
+void TwoPhase<Dim>::project(Scene<Dim>& scene, double dt, double kick) {
+  {
+    const auto timing = scene.clock.time(Stage::pressure_assembly);
+    const auto relative = relative_.velocity(scene.particles);
+    power_.assign(scene.blocks.particle_blocks().size(), 0);
+    for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+      if (pressure_.is_wet(b)) power_[b] = pores_.collect(scene, b, block, work, kick, relative, pressure_);
+    });
+    dissipated_ += kick * std::accumulate(power_.begin(), power_.end(), 0.0);
+  }
+  pressure_.solve(scene, outside_, {dt, kick, scene.time + dt, water_.increment, water_.stabilisation});
+}
+
+/// The nodes take up the new pressure, eq. (48).
+template <int Dim>
+void TwoPhase<Dim>::correct(Scene<Dim>& scene, double kick) {
+  const bool friction = scene.faces.any_friction();
+  if (friction) wall_.resize(scene.blocks, scene.shape->degree());
+  {
+    const auto timing = scene.clock.time(Stage::scatter);
+    for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+      pores_.correct(scene, b, block, work, water_.increment, pressure_);
+      if (friction) pores_.scatter_pressure(scene, b, block, outside_, wall_);
+    });
+  }
+  correct_nodes(scene, kick, friction ? &wall_ : nullptr);
+  if (relative_.active()) relative_.advance(scene, stress_.workspaces(), kick);
+}
+
+/// Particles move and strain with the nodes; their pores follow.
+template <int Dim>
+void TwoPhase<Dim>::gather(Scene<Dim>& scene, double dt) {
+  if (relative_.active()) relative_.gather(scene, stress_.workspaces(), dt);
+  switch (stress_.timing()) {
+    case StressTiming::usf:
+      stress_.gather_motion(scene, dt);
+      break;
+    case StressTiming::usl:
+      stress_.gather_motion_and_update(scene, dt);
+      break;
+    case StressTiming::musl:
+      stress_.gather_motion_and_map_again(scene, dt);
+      break;
+  }
+  const auto timing = scene.clock.time(Stage::gather);
+  parallel_for(scene.blocks.particle_blocks().size(),
+               [&](std::size_t b) { pores_.follow_volume(scene, scene.blocks.particle_blocks()[b]); });
+}
+
+// ---- limits ----
+
+/// Those of the skeleton, whose waves the pressure does not see; and for surfaces of water, that of a fall by a cell.
+template <int Dim>
+std::vector<TimeStepLimit> TwoPhase<Dim>::limits(const Scene<Dim>& scene, const SafetyFactors& factors) const {
+  const bool sound = water_.formulation == Formulation::explicit_;
+  const double fastest = sound ? pores_.fastest_sound(scene.particles) : stress_.fastest_wave();
+  std::vector<TimeStepLimit> all = explicit_limits(scene, fastest, factors);
+  if (sound) all.front().name = "sound";
+  double g = 0;
+  for (const double component : gravity_) g = std::hypot(g, component);
+  if (pores_.any_liquid() && g > 0)
+    all.push_back({factors.courant * std::sqrt(scene.grid.smallest_cell() / g), "gravity"});
+  return all;
+}
+
+template <int Dim>
+std::vector<TimeStepLimit> TwoPhase<Dim>::time_step_limits(const Scene<Dim>& scene) const {
+  const auto& s = scene.scheme;
+  return limits(scene, {s.courant, s.advection, s.strain_per_step});
+}
+
+template <int Dim>
+std::vector<TimeStepLimit> TwoPhase<Dim>::hard_limits(const Scene<Dim>& scene) const {
+  return limits(scene, {1, 0.5, 0.5});
+}
+
+// ---- reporting ----
+
+template <int Dim>
+void TwoPhase<Dim>::store(Archive& archive) const {
+  archive.reals["two_phase"] = {stress_.fastest_wave(), dissipated_, discharge_};
+  pressure_.store(archive);
+}
+
+template <int Dim>
+void TwoPhase<Dim>::restore(const Archive& archive) {
+  const auto& own = archive.reals.at("two_phase");
+  stress_.restore_fastest_wave(own.at(0));
+  dissipated_ = own.at(1);
+  discharge_ = own.at(2);
+  pressure_.restore(archive);
+  placed_ = false;
+}
+
+template <int Dim>
+std::vector<std::pair<std::string, double>> TwoPhase<Dim>::energies(const Scene<Dim>& scene) const {
+  return {{"kinetic", kinetic_energy(scene)},
+          {"elastic", stress_.materials().stored_energy(scene.particles)},
+          {"potential", potential_energy(scene)},
+          {"water_compression", pores_.compression_energy(scene.particles)},
+          {"seepage_dissipation", dissipated_}};
+}
+
+template <int Dim>
+std::vector<std::pair<std::string, double>> TwoPhase<Dim>::step_numbers() const {
+  return {{"pressure_unknowns", static_cast<double>(pressure_.unknowns())},
+          {"pressure_iterations", pressure_.report().iterations},
+          {"pressure_factorized", pressure_.report().factorized ? 1 : 0}};
+}
+
+template <int Dim>
+std::vector<std::pair<std::string, double>> TwoPhase<Dim>::totals() const {
+  const LaggedCholeskyStatistics& s = pressure_.statistics();
+  return {{"pressure_analyses", s.analyses},
+          {"pressure_factorizations", s.factorizations},
+          {"pressure_solves", s.solves},
+          {"pressure_iterations", s.iterations},
+          {"pressure_factor_nonzeros", static_cast<double>(s.factor_nonzeros)},
+          {"pressure_analyze_seconds", s.analyze_seconds},
+          {"pressure_factorize_seconds", s.factorize_seconds},
+          {"pressure_solve_seconds", s.solve_seconds},
+          {"initial_discharge", discharge_}};
+}
+
+template <int Dim>
+std::vector<std::pair<std::string, Node>> TwoPhase<Dim>::resolved_sections() const {
+  Node materials = stress_.materials().resolved();
+  for (std::size_t m = 0; m < materials.items.size(); ++m)
+    if (const PoreSpace& space = pores_.spaces()[m]; space.saturated && !space.liquid)
+      materials.items[m].set("water", resolved(space));
+  return {{"materials", materials},
+          {"initial_stress", resolved(initial_stress_)},
+          {"surface_loads", resolved_surface_loads(loads_)},
+          {"water", resolved(water_, Dim)}};
+}
+
+namespace {
+
+const char* const summary =
+    "Soil with water in its pores, and water beside it: effective stresses explicit in time, the pressure of the water "
+    "by "
+    "a semi-implicit projection. Consolidation, seepage, undrained failure and liquefaction.";
+
+std::vector<FieldDoc> keys() { return water_docs(); }
+
+const bool registered = physics_registry<2>().add("two_phase", {summary, keys}, [](const Case& definition) {
+  return std::make_unique<TwoPhase<2>>(definition);
+}) && physics_registry<3>().add("two_phase", {summary, keys}, [](const Case& definition) {
+  return std::make_unique<TwoPhase<3>>(definition);
+});
+
+}  // namespace
+
+template class TwoPhase<2>;
+template class TwoPhase<3>;
+
+}  // namespace sluice

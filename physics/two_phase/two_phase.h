@@ -1,0 +1,65 @@
+/// two_phase: soil with water in its pores, and water beside it. Effective stresses in the skeleton, explicit in time;
+/// the pressure of the water by a semi-implicit projection. docs/theory.md, section 9.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/simulation/time_step.h"
+#include "physics/initial_stress/initial_stress.h"
+#include "physics/loads/external_pressure.h"
+#include "physics/materials/stress_update.h"
+#include "physics/two_phase/pore_water.h"
+#include "physics/two_phase/pressure_equation.h"
+#include "physics/two_phase/relative_motion.h"
+#include "physics/two_phase/water.h"
+
+namespace sluice {
+
+template <int Dim>
+class TwoPhase final : public PhysicsModule<Dim> {
+ public:
+  explicit TwoPhase(const Case& definition);
+
+  void declare(Particles& particles) override;
+  double density(int material) const override;
+  void initialise(Scene<Dim>& scene) override;
+  std::vector<TimeStepLimit> hard_limits(const Scene<Dim>& scene) const override;
+  std::vector<TimeStepLimit> time_step_limits(const Scene<Dim>& scene) const override;
+  void step(Scene<Dim>& scene, double dt) override;
+  void store(Archive& archive) const override;
+  void restore(const Archive& archive) override;
+  std::vector<std::pair<std::string, double>> energies(const Scene<Dim>& scene) const override;
+  std::vector<std::pair<std::string, double>> step_numbers() const override;
+  std::vector<std::pair<std::string, double>> totals() const override;
+  std::vector<std::pair<std::string, Node>> resolved_sections() const override;
+
+ private:
+  void start_seepage(Scene<Dim>& scene);
+  void step_projected(Scene<Dim>& scene, double dt);
+  void step_explicit(Scene<Dim>& scene, double dt);
+  void predict(Scene<Dim>& scene, double kick);
+  void project(Scene<Dim>& scene, double dt, double kick);
+  void correct(Scene<Dim>& scene, double kick);
+  void gather(Scene<Dim>& scene, double dt);
+
+  std::vector<TimeStepLimit> limits(const Scene<Dim>& scene, const SafetyFactors& factors) const;
+
+  WaterCase water_;
+  InitialStress initial_stress_;
+  std::vector<SurfaceLoad> loads_;
+  StressUpdate<Dim> stress_;
+  PoreWater<Dim> pores_;
+  RelativeMotion<Dim> relative_;
+  ExternalPressure<Dim> outside_;
+  PressureEquation<Dim> pressure_;
+  NodeFields<Dim> wall_;       // forces of the pressure alone, which presses on faces without friction
+  std::vector<double> power_;  // dissipated by the flow, by block [W]
+  double dissipated_ = 0;      // [J], since the start
+  Vector<Dim> gravity_{};
+  double discharge_ = 0;  // of the steady seepage at the start [m3/s]
+  bool placed_ = false;   // the pressure equation knows the blocks
+};
+
+}  // namespace sluice
