@@ -13,19 +13,33 @@
 
 #include "solvers/stopwatch.h"
 
+// Of the OpenMP library inside CHOLMOD; declared here because omp.h of another compiler may belong to another library.
+extern "C" {
+int omp_get_max_active_levels();
+void omp_set_max_active_levels(int levels);
+}
+
 namespace sluice {
 namespace {
 
-/// OpenBLAS has one number of threads for the whole program: sets it, and restores it at its end.
-class BlasThreads {
+/// Threads of the libraries, until its end. OpenBLAS has one number of threads for the whole program. CHOLMOD opens an
+/// OpenMP region of four threads for every block of the factor: blocks are so small that it waits for threads most of
+/// the time, two to four times as long as one thread needs for the work. No level of active regions means one thread.
+class LibraryThreads {
  public:
-  explicit BlasThreads(int threads) : previous_(openblas_get_num_threads()) { openblas_set_num_threads(threads); }
-  ~BlasThreads() { openblas_set_num_threads(previous_); }
-  BlasThreads(const BlasThreads&) = delete;
-  BlasThreads& operator=(const BlasThreads&) = delete;
+  explicit LibraryThreads(int blas) : blas_(openblas_get_num_threads()), openmp_levels_(omp_get_max_active_levels()) {
+    openblas_set_num_threads(blas);
+    omp_set_max_active_levels(0);
+  }
+  ~LibraryThreads() {
+    openblas_set_num_threads(blas_);
+    omp_set_max_active_levels(openmp_levels_);
+  }
+  LibraryThreads(const LibraryThreads&) = delete;
+  LibraryThreads& operator=(const LibraryThreads&) = delete;
 
  private:
-  int previous_;
+  int blas_, openmp_levels_;
 };
 
 /// CHOLMOD's view of a matrix of which it reads the lower triangle, with no copy. CHOLMOD does not write to it.
@@ -74,22 +88,29 @@ void require_success(const cholmod_common& common, const char* action) {
                                          common.status == CHOLMOD_TOO_LARGE ? ", too large for int indices" : ""));
 }
 
+SparseCholesky::DenseBlocks view_blocks(const cholmod_factor& factor) {
+  const auto ints = [](void* begin, std::size_t size) { return std::span(static_cast<const int*>(begin), size); };
+  return {.first_column = ints(factor.super, factor.nsuper + 1),
+          .first_row = ints(factor.pi, factor.nsuper + 1),
+          .first_value = ints(factor.px, factor.nsuper + 1),
+          .row = ints(factor.s, factor.ssize),
+          .value = std::span(static_cast<const double*>(factor.x), factor.xsize)};
+}
+
 /// The diagonal of the factor L (A = L Lᵀ), in the order of elimination.
 std::vector<double> factor_diagonal(const cholmod_factor& factor) {
-  const auto* x = static_cast<const double*>(factor.x);
   std::vector<double> diagonal(factor.n);
   if (factor.is_super != 0) {
-    const auto* first_column = static_cast<const int*>(factor.super);
-    const auto* first_row = static_cast<const int*>(factor.pi);
-    const auto* first_value = static_cast<const int*>(factor.px);
+    const auto [first_column, first_row, first_value, row, value] = view_blocks(factor);
     for (std::size_t block = 0; block < factor.nsuper; ++block) {
       const int rows = first_row[block + 1] - first_row[block];
       for (int column = first_column[block]; column < first_column[block + 1]; ++column) {
-        const auto offset = static_cast<std::ptrdiff_t>(column - first_column[block]) * (rows + 1);
-        diagonal[static_cast<std::size_t>(column)] = x[first_value[block] + offset];
+        const int entry = first_value[block] + (column - first_column[block]) * (rows + 1);
+        diagonal[static_cast<std::size_t>(column)] = value[static_cast<std::size_t>(entry)];
       }
     }
   } else {
+    const auto* x = static_cast<const double*>(factor.x);
     const auto* start = static_cast<const int*>(factor.p);
     for (std::size_t column = 0; column < factor.n; ++column) diagonal[column] = x[start[column]];
   }
@@ -120,7 +141,7 @@ struct SparseCholesky::Factor {
   };
 
   Factor();
-  void choose_ordering(const SparseCholeskyOptions& options);
+  void set_up(const SparseCholeskyOptions& options);
   bool has_pattern(const Matrix& matrix) const;
   /// Unknown that is eliminated at `position`.
   int unknown(std::size_t position) const { return static_cast<const int*>(lower->Perm)[position]; }
@@ -148,7 +169,8 @@ SparseCholesky::Factor::Factor() : common(new cholmod_common), lower(nullptr, Fr
   common->final_ll = 1;
 }
 
-void SparseCholesky::Factor::choose_ordering(const SparseCholeskyOptions& options) {
+void SparseCholesky::Factor::set_up(const SparseCholeskyOptions& options) {
+  if (options.dense_blocks) common->supernodal = CHOLMOD_SUPERNODAL;
   if (options.ordering == Ordering::automatic) return;
   common->nmethods = 1;
   common->method[0].ordering = options.ordering == Ordering::minimum_degree      ? CHOLMOD_AMD
@@ -188,7 +210,7 @@ void SparseCholesky::Factor::require_positive_pivots(std::span<const double> val
 SparseCholesky::SparseCholesky(SparseCholeskyOptions options)
     : factor_(std::make_unique<Factor>()), options_(std::move(options)) {
   assert(options_.blas_threads >= 1);
-  factor_->choose_ordering(options_);
+  factor_->set_up(options_);
 }
 
 SparseCholesky::~SparseCholesky() = default;
@@ -230,7 +252,7 @@ void SparseCholesky::factorize(const Matrix& matrix) {
 void SparseCholesky::factorize(std::span<const double> values) {
   assert(factor_->lower && values.size() == factor_->pattern.row.size());
   const Stopwatch stopwatch(statistics_.factorize_seconds);
-  const BlasThreads threads(options_.blas_threads);
+  const LibraryThreads threads(options_.blas_threads);
   cholmod_common* common = factor_->common.get();
   cholmod_sparse view = view_lower(factor_->pattern, values.data());
   factor_->factorized = false;
@@ -251,7 +273,7 @@ Eigen::VectorXd SparseCholesky::solve(const Eigen::VectorXd& b) {
 void SparseCholesky::solve(std::span<const double> b, std::span<double> x) {
   assert(factor_->factorized && b.size() == factor_->lower->n && x.size() == b.size());
   const Stopwatch stopwatch(statistics_.solve_seconds);
-  const BlasThreads threads(options_.blas_threads);
+  const LibraryThreads threads(options_.blas_threads);
   cholmod_dense view = view_column(b);
   cholmod_solve2(CHOLMOD_A, factor_->lower.get(), &view, nullptr, &factor_->solution, nullptr, &factor_->permuted,
                  &factor_->work, factor_->common.get());
@@ -264,6 +286,11 @@ const SymmetricPattern& SparseCholesky::pattern() const { return factor_->patter
 
 std::span<const int> SparseCholesky::elimination_order() const {
   return {static_cast<const int*>(factor_->lower->Perm), factor_->lower->n};
+}
+
+SparseCholesky::DenseBlocks SparseCholesky::dense_blocks() const {
+  assert(factor_->factorized && statistics_.supernodal);
+  return view_blocks(*factor_->lower);
 }
 
 }  // namespace sluice

@@ -58,6 +58,7 @@ struct SparseCholeskyOptions {
   /// Threads of the dense kernels (OpenBLAS). The default, one, keeps the last bits of the solution independent of the
   /// machine; more pay for n above about 1e5 in 2-D and 1e4 in 3-D.
   int blas_threads = 1;
+  bool dense_blocks = false;  ///< gather columns in dense blocks even where single columns are less work (small n)
 };
 
 struct SparseCholeskyStatistics {
@@ -102,6 +103,16 @@ class SparseCholesky {
   const SymmetricPattern& pattern() const;
   /// The order of elimination of the last analysis: unknown `elimination_order()[k]` is eliminated k-th.
   std::span<const int> elimination_order() const;
+
+  /// CHOLMOD's factor L of dense blocks: block k has columns [first_column[k], first_column[k + 1]), rows
+  /// row[first_row[k]...first_row[k + 1]), of which the first are its columns, and values by columns from
+  /// first_value[k]. Rows and columns are in the order of elimination.
+  struct DenseBlocks {
+    std::span<const int> first_column, first_row, first_value, row;
+    std::span<const double> value;
+  };
+  /// Of the last factorization, which had SparseCholeskyOptions::dense_blocks.
+  DenseBlocks dense_blocks() const;
 
   const SparseCholeskyStatistics& statistics() const { return statistics_; }
 

@@ -38,11 +38,13 @@ struct NodeMotion {
   }
 };
 
-/// `outward` is -1 on a lower face and +1 on an upper one.
+/// `outward` is -1 on a lower face and +1 on an upper one; `relief` is the velocity along the axis that presses without
+/// friction.
 template <int Dim>
-void impose_on_node(const FaceCase& face, int axis, double outward, bool friction, const NodeMotion<Dim>& node) {
+void impose_on_node(const FaceCase& face, int axis, double outward, bool friction, double relief,
+                    const NodeMotion<Dim>& node) {
   if (face.normal == FaceCase::Normal::free) return;
-  const double pressing = std::max(0.0, outward * node.v(axis));
+  const double pressing = std::max(0.0, outward * (node.v(axis) - relief));
   node.set(axis, 0);
   double keep = 1;
   if (face.tangential == FaceCase::Tangential::fixed) {
@@ -63,7 +65,7 @@ void impose_on_node(const FaceCase& face, int axis, double outward, bool frictio
 }  // namespace
 
 template <int Dim>
-void Faces<Dim>::impose(const NodeBlock<Dim>& nodes, Lane* motion, bool friction) const {
+void Faces<Dim>::impose(const NodeBlock<Dim>& nodes, Lane* motion, bool friction, const Lane* relief) const {
   constexpr int width = block_width<Dim>;
   for (int axis = 0; axis < Dim; ++axis)
     for (int side = 0; side < 2; ++side) {
@@ -72,9 +74,17 @@ void Faces<Dim>::impose(const NodeBlock<Dim>& nodes, Lane* motion, bool friction
       if (rule.normal == FaceCase::Normal::free || layer < nodes.low[axis] || layer >= nodes.high[axis]) continue;
       for (int n = 0; n < block_nodes<Dim>; ++n) {
         if (n / power(width, axis) % width != layer) continue;
-        impose_on_node<Dim>(rule, axis, side == 0 ? -1 : 1, friction, {motion + n * motion_lanes<Dim>});
+        impose_on_node<Dim>(rule, axis, side == 0 ? -1 : 1, friction, relief != nullptr ? relief[n][axis] : 0,
+                            {motion + n * motion_lanes<Dim>});
       }
     }
+}
+
+template <int Dim>
+bool Faces<Dim>::any_friction() const {
+  return std::any_of(face_.begin(), face_.end(), [](const FaceCase& face) {
+    return face.normal == FaceCase::Normal::fixed && face.tangential == FaceCase::Tangential::friction;
+  });
 }
 
 template class Faces<2>;

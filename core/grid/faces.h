@@ -23,18 +23,23 @@ class Faces {
 
   /// Velocities that are given whatever the forces are: normal fixed, tangential fixed. Acts on the motion of a node
   /// block; the change is added to dv as well.
-  void fix(const NodeBlock<Dim>& nodes, Lane* motion) const { impose(nodes, motion, false); }
+  void fix(const NodeBlock<Dim>& nodes, Lane* motion) const { impose(nodes, motion, false, nullptr); }
 
   /// The same after forces have acted, with Coulomb friction: the normal impulse m v_n that the wall takes up limits
   /// the tangential impulse to friction * m v_n. A wall that is being pulled (v_n away from it) gives no friction.
-  void fix_with_friction(const NodeBlock<Dim>& nodes, Lane* motion) const { impose(nodes, motion, true); }
+  /// `relief`, a lane {x, y, (z)} a node [m/s], is a part of the velocity whose impulse on the wall gives no friction:
+  /// that of pore water. Null: there is none.
+  void fix_with_friction(const NodeBlock<Dim>& nodes, Lane* motion, const Lane* relief = nullptr) const {
+    impose(nodes, motion, true, relief);
+  }
+  bool any_friction() const;
 
   const FaceCase& face(int axis, int side) const { return face_[static_cast<std::size_t>(2 * axis + side)]; }
   /// The node on the wall: 0 or the last one.
   int wall_node(int axis, int side) const { return side == 0 ? 0 : last_node_[static_cast<std::size_t>(axis)]; }
 
  private:
-  void impose(const NodeBlock<Dim>& nodes, Lane* motion, bool friction) const;
+  void impose(const NodeBlock<Dim>& nodes, Lane* motion, bool friction, const Lane* relief) const;
 
   std::array<FaceCase, 2 * Dim> face_{};
   Index<Dim> last_node_{};

@@ -116,15 +116,25 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
 }
 
 template <int Dim>
-void correct_nodes(Scene<Dim>& scene, double kick) {
+void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction) {
   const auto timing = scene.clock.time(Stage::nodes);
   const double lightest = lightest_node(scene);
   parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
+    const Lane* const momentum = scene.nodes.momentum(b);
     scene.nodes.add_force(scene.blocks, b);
-    accelerate<Dim>(block, scene.nodes.momentum(b), scene.nodes.force(b), kick, scene.gravity, lightest,
-                    scene.nodes.motion(b));
-    scene.faces.fix_with_friction(block, scene.nodes.motion(b));
+    accelerate<Dim>(block, momentum, scene.nodes.force(b), kick, scene.gravity, lightest, scene.nodes.motion(b));
+    if (without_friction == nullptr) {
+      scene.faces.fix_with_friction(block, scene.nodes.motion(b));
+      return;
+    }
+    without_friction->collect_force(scene.blocks, b);
+    std::array<Lane, block_nodes<Dim>> relief;
+    for (std::size_t n = 0; n < relief.size(); ++n) {
+      const double mass = momentum[n][0];
+      relief[n] = mass > lightest ? (kick / mass) * vector_part<Dim>(without_friction->force(b)[n]) : Lane{};
+    }
+    scene.faces.fix_with_friction(block, scene.nodes.motion(b), relief.data());
   });
 }
 
@@ -163,7 +173,7 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
   template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double);                \
   template void velocity_from_momentum<Dim>(Scene<Dim>&);                      \
   template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool);           \
-  template void correct_nodes<Dim>(Scene<Dim>&, double);                       \
+  template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*);     \
   template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&); \
   template MotionUpdate<Dim> motion_update<Dim>(Scene<Dim>&, double, ColumnId);
 SLUICE_INSTANTIATE(2)

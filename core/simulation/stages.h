@@ -38,9 +38,10 @@ template <int Dim>
 void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force);
 
 /// The same once more, from the momentum that the nodes have, with the force tiles added to the forces that they have:
-/// a correction, for example by a pressure that was not known before.
+/// a correction, for example by a pressure that was not known before. `without_friction`, or null, has in its force tiles
+/// a part of all forces, whose pressure on faces gives no friction.
 template <int Dim>
-void correct_nodes(Scene<Dim>& scene, double kick);
+void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction);
 
 /// Calls body(number of the block, block, workspace of the thread) for every block of particles, in parallel.
 template <int Dim, class Body>

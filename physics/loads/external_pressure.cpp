@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/case/case_schema.h"
+#include "core/grid/nodes.h"
 
 namespace sluice {
 
@@ -67,10 +68,7 @@ Node resolved_surface_loads(const std::vector<SurfaceLoad>& loads) {
 template <int Dim>
 ExternalPressure<Dim>::ExternalPressure(std::vector<SurfaceLoad> loads, std::vector<Pond> ponds, double unit_weight,
                                         const GridGeometry<Dim>& grid)
-    : loads_(std::move(loads)),
-      ponds_(std::move(ponds)),
-      unit_weight_(unit_weight),
-      smallest_cell_(grid.smallest_cell()) {}
+    : loads_(std::move(loads)), ponds_(std::move(ponds)), unit_weight_(unit_weight), grid_(grid) {}
 
 template <int Dim>
 double ExternalPressure<Dim>::of_ponds(const Vector<Dim>& x, double t) const {
@@ -87,18 +85,15 @@ double ExternalPressure<Dim>::at(const Vector<Dim>& x, double t) const {
   return sum;
 }
 
-/// The fields are piecewise linear: central differences are exact but at kinks.
 template <int Dim>
-Vector<Dim> ExternalPressure<Dim>::gradient(const Vector<Dim>& x, double t) const {
-  const double step = 1e-3 * smallest_cell_;
-  Vector<Dim> gradient;
-  for (int a = 0; a < Dim; ++a) {
-    Vector<Dim> above = x, below = x;
-    above[a] += step;
-    below[a] -= step;
-    gradient[a] = (at(above, t) - at(below, t)) / (2 * step);
+void ExternalPressure<Dim>::load(const Index<Dim>& first_cell, double t, Lane* tile) const {
+  constexpr int width = tile_width<Dim>(1);
+  for (int n = 0; n < power(width, Dim); ++n) {
+    Vector<Dim> x;
+    for (int a = 0, rest = n; a < Dim; ++a, rest /= width)
+      x[a] = grid_.min[a] + grid_.cell[a] * (first_cell[a] - tile_margin + rest % width);
+    tile[n * motion_lanes<Dim>] = Lane{at(x, t), 0, 0, 0};
   }
-  return gradient;
 }
 
 template class ExternalPressure<2>;

@@ -14,6 +14,7 @@
 #include "core/case/geometry.h"
 #include "core/case/schema.h"
 #include "core/grid/geometry.h"
+#include "core/grid/lane.h"
 
 namespace sluice {
 
@@ -48,13 +49,15 @@ class ExternalPressure {
   /// The whole pressure, and that of the ponds alone, which stands in the pores of the surface, too [Pa].
   double at(const Vector<Dim>& x, double t) const;
   double of_ponds(const Vector<Dim>& x, double t) const;
-  /// Gradient of the whole pressure [Pa/m].
-  Vector<Dim> gradient(const Vector<Dim>& x, double t) const;
+  /// The whole pressure at the vertices of the cells around a block, as a tile of motion lanes for linear functions:
+  /// particles then find the pressure and its gradient between the vertices.
+  void load(const Index<Dim>& first_cell, double t, Lane* tile) const;
 
  private:
   std::vector<SurfaceLoad> loads_;
   std::vector<Pond> ponds_;
-  double unit_weight_, smallest_cell_;
+  double unit_weight_;
+  GridGeometry<Dim> grid_;
 };
 
 }  // namespace sluice

@@ -108,7 +108,7 @@ void StressUpdate<Dim>::update(Scene<Dim>& scene, double dt, const AfterBlock& a
         return;
       }
       stress_[b] = update_block(scene, block, strain, dt);
-      if (after_block) after_block(b, block);
+      if (after_block) after_block(b, block, work);
     });
   }
   if (f_bar_) apply_f_bar(scene, dt, after_block);
@@ -130,7 +130,7 @@ void StressUpdate<Dim>::apply_f_bar(Scene<Dim>& scene, double dt, const AfterBlo
     cells_.mean(scene.blocks, b, scene.view(block), mean);
     set_volumetric_strain(mean, block.end - block.begin, strain);
     stress_[b] = update_block(scene, block, strain, dt);
-    if (after_block) after_block(b, block);
+    if (after_block) after_block(b, block, work);
   });
 }
 

@@ -18,9 +18,9 @@ enum class StressTiming { usf, usl, musl };
 template <int Dim>
 class StressUpdate {
  public:
-  /// Called in parallel, with the number of a block, after the stresses of that block have changed and while its
-  /// particles are in the cache.
-  using AfterBlock = std::function<void(std::size_t, const ParticleBlock<Dim>&)>;
+  /// Called in parallel, with the number of a block and working memory, after the stresses of that block have changed
+  /// and while its particles are in the cache.
+  using AfterBlock = std::function<void(std::size_t, const ParticleBlock<Dim>&, Workspace<Dim>&)>;
 
   /// Reads all materials of the case. Throws CaseError.
   explicit StressUpdate(const Case& definition);

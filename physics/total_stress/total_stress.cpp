@@ -61,7 +61,7 @@ template <int Dim>
 void TotalStress<Dim>::step_usf(Scene<Dim>& scene, double dt) {
   scatter(scene, ScatterWhat::momentum);
   velocity_from_momentum(scene);
-  stress_.update(scene, scene.previous_dt, [&](std::size_t b, const ParticleBlock<Dim>& block) {
+  stress_.update(scene, scene.previous_dt, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>&) {
     scene.shape->scatter(ScatterWhat::force, scene.scatter_input(block), 0, nullptr, scene.nodes.force_tile(b));
   });
   advance_nodes(scene, scene.kick(dt), false, true);

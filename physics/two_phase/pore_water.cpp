@@ -6,6 +6,10 @@
 
 namespace sluice {
 
+namespace {
+constexpr double infinity = std::numeric_limits<double>::infinity();
+}
+
 template <int Dim>
 PoreWater<Dim>::PoreWater(const WaterCase& water, std::vector<PoreSpace> spaces, const Materials<Dim>& materials)
     : water_(water),
@@ -32,8 +36,9 @@ void PoreWater<Dim>::declare(Particles& particles, bool with_body_force) {
   total_stress_ =
       columns.declare({"total_normal_stress", "Pa", Dim, derived, "Normal stresses that forces come from.", false});
   zero_ = columns.declare({"zero", "1", 1, derived, "Zeros.", false});
-  if (with_body_force)
-    body_force_ = columns.declare({"body_force", "N", Dim, derived, "Force that goes with outside pressure.", false});
+  if (!with_body_force) return;
+  outside_pressure_ = columns.declare({"outside_pressure", "Pa", 1, derived, "Pressure from outside.", false});
+  body_force_ = columns.declare({"body_force", "N", Dim, derived, "Force that goes with outside pressure.", false});
 }
 
 template <int Dim>
@@ -58,6 +63,19 @@ void PoreWater<Dim>::fill(Scene<Dim>& scene) {
 }
 
 template <int Dim>
+void PoreWater<Dim>::dry_above_zero_pressure(Scene<Dim>& scene) {
+  Columns& columns = scene.particles.columns;
+  const double* found = columns.data(new_pressure_);
+  for (std::size_t p = 0; p < scene.particles.size(); ++p) {
+    columns.data(pressure_)[p] = std::max(0.0, found[p]);
+    if (found[p] > 0 || columns.data(wet_)[p] == 0) continue;
+    columns.data(wet_)[p] = 0;
+    columns.data(scene.particles.mass)[p] = columns.data(inertia_)[p] = columns.data(solid_mass_)[p];
+    for (int a = 0; a < Dim; ++a) columns.data(pressure_gradient_, a)[p] = 0;
+  }
+}
+
+template <int Dim>
 void PoreWater<Dim>::set_initial_pressure(Scene<Dim>& scene) {
   using enum InitialPressure::Method;
   const InitialPressure& initial = water_.initial;
@@ -69,8 +87,9 @@ void PoreWater<Dim>::set_initial_pressure(Scene<Dim>& scene) {
     if (initial.method != hydrostatic) continue;
     const double x = columns.data(scene.particles.position)[p], z = columns.data(scene.particles.position, Dim - 1)[p];
     const double level = initial.level ? *initial.level : water_.table_level(x);
-    columns.data(pressure_)[p] = weight * (level - z);
-    columns.data(pressure_gradient_, Dim - 1)[p] = -weight;
+    const double hydrostatic_pressure = weight * (level - z), least = -initial.suction.value_or(infinity);
+    columns.data(pressure_)[p] = std::max(hydrostatic_pressure, least);
+    columns.data(pressure_gradient_, Dim - 1)[p] = hydrostatic_pressure > least ? -weight : 0;
   }
 }
 
@@ -89,32 +108,43 @@ std::vector<char> PoreWater<Dim>::wet_blocks(const Scene<Dim>& scene) const {
 }
 
 template <int Dim>
-SkeletonLoads<Dim> PoreWater<Dim>::skeleton_loads(Scene<Dim>& scene, const ExternalPressure<Dim>& outside) {
+SkeletonLoads<Dim> PoreWater<Dim>::skeleton_loads(Scene<Dim>& scene, const ExternalPressure<Dim>& outside,
+                                                  std::vector<Workspace<Dim>>& workspaces) {
   Columns& columns = scene.particles.columns;
   double* push = columns.data(new_pressure_);
   std::ranges::copy(columns.values(pressure_), push);
   SkeletonLoads<Dim> loads{push, {}};
   if (!outside.any()) return loads;
-  for (std::size_t p = 0; p < scene.particles.size(); ++p) {
-    Vector<Dim> x;
-    for (int a = 0; a < Dim; ++a) x[a] = columns.data(scene.particles.position, a)[p];
-    push[p] -= outside.at(x, scene.time);
-    const Vector<Dim> slope = outside.gradient(x, scene.time);
-    for (int a = 0; a < Dim; ++a) columns.data(body_force_, a)[p] = -columns.data(scene.particles.volume)[p] * slope[a];
-  }
+  for_each_block(scene, workspaces, [&](std::size_t, const auto& block, Workspace<Dim>& work) {
+    take_outside_pressure(scene, block, work.motion_tile.data(), outside);
+    for (std::uint32_t p = block.begin; p < block.end; ++p) push[p] -= columns.data(outside_pressure_)[p];
+  });
   for (int a = 0; a < Dim; ++a) loads.body_force[a] = columns.data(body_force_, a);
   return loads;
 }
 
 // ---- forces ----
 
+/// Outside pressure at the particles, and the force -V grad P that goes with it.
 template <int Dim>
-void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double increment,
-                                    const ExternalPressure<Dim>& outside) {
+void PoreWater<Dim>::take_outside_pressure(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
+                                           const ExternalPressure<Dim>& outside) {
+  Columns& columns = scene.particles.columns;
+  const double* volume = columns.data(scene.particles.volume);
+  FieldGather<Dim> out{columns.data(outside_pressure_), {}};
+  for (int a = 0; a < Dim; ++a) out.gradient[a] = columns.data(body_force_, a);
+  outside.load(block.first_cell, scene.time, tile);
+  linear_->gather_field(scene.view(block), tile, out);
+  for (int a = 0; a < Dim; ++a)
+    for (std::uint32_t p = block.begin; p < block.end; ++p) out.gradient[a][p] *= -volume[p];
+}
+
+template <int Dim>
+void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
+                                    double increment, const ExternalPressure<Dim>& outside) {
   Columns& columns = scene.particles.columns;
   ScatterInput<Dim> in = scene.scatter_input(block);
   const double* pressure = columns.data(pressure_);
-  const double* volume = columns.data(scene.particles.volume);
   for (int a = 0; a < Dim; ++a) {
     const double* effective = in.stress[a];
     double* total = columns.data(total_stress_, a);
@@ -122,18 +152,13 @@ void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const Part
     in.stress[a] = total;
   }
   if (outside.any()) {
-    const double time = scene.time;
-    for (std::uint32_t p = block.begin; p < block.end; ++p) {
-      Vector<Dim> x;
-      for (int a = 0; a < Dim; ++a) x[a] = in.particles.position[a][p];
-      const double here = outside.at(x, time);
-      const Vector<Dim> slope = outside.gradient(x, time);
-      for (int a = 0; a < Dim; ++a) {
-        columns.data(total_stress_, a)[p] += here;
-        columns.data(body_force_, a)[p] = -volume[p] * slope[a];
-      }
+    take_outside_pressure(scene, block, tile, outside);
+    const double* here = columns.data(outside_pressure_);
+    for (int a = 0; a < Dim; ++a) {
+      double* total = columns.data(total_stress_, a);
+      for (std::uint32_t p = block.begin; p < block.end; ++p) total[p] += here[p];
+      in.body_force[a] = columns.data(body_force_, a);
     }
-    for (int a = 0; a < Dim; ++a) in.body_force[a] = columns.data(body_force_, a);
   }
   scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, scene.nodes.force_tile(b));
 }
@@ -157,7 +182,7 @@ void PoreWater<Dim>::take_pressure(Scene<Dim>& scene, std::size_t b, const Parti
     const Batch& batch = scene.blocks.batches()[k];
     // Free water tears rather than be pulled; the continuation beyond a ragged surface would pull.
     const bool liquid = spaces_[static_cast<std::size_t>(batch.material)].liquid;
-    const double least = liquid ? 0 : -std::numeric_limits<double>::max();
+    const double least = liquid ? 0 : -infinity;
     for (std::uint32_t p = batch.begin; p < batch.end; ++p)
       pressure[p] = wet[p] != 0 ? std::max(pressure[p], least) : 0;
   }
@@ -183,6 +208,24 @@ void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlo
   in.stress.fill(columns.data(zero_));
   for (int a = 0; a < Dim; ++a) in.stress[a] = stress;
   scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, scene.nodes.force_tile(b));
+}
+
+template <int Dim>
+void PoreWater<Dim>::scatter_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
+                                      const ExternalPressure<Dim>& outside, NodeFields<Dim>& nodes) {
+  Columns& columns = scene.particles.columns;
+  const double* pressure = columns.data(pressure_);
+  double* stress = columns.data(total_stress_);
+  for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] = -pressure[p];
+  if (outside.any()) {
+    const double* wet = columns.data(wet_);
+    const double* here = columns.data(outside_pressure_);
+    for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] += wet[p] * here[p];
+  }
+  ScatterInput<Dim> in = scene.scatter_input(block);
+  in.stress.fill(columns.data(zero_));
+  for (int a = 0; a < Dim; ++a) in.stress[a] = stress;
+  scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, nodes.force_tile(b));
 }
 
 // ---- to cells and vertices ----
@@ -214,23 +257,44 @@ std::size_t place_in_tile(const GridGeometry<Dim>& grid, const Index<Dim>& first
 }  // namespace
 
 template <int Dim>
-void PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
-                             double kick, const std::array<const double*, Dim>& relative,
-                             PressureEquation<Dim>& equation) {
+double PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
+                               double kick, const std::array<const double*, Dim>& relative,
+                               PressureEquation<Dim>& equation) {
+  Columns& columns = scene.particles.columns;
+  std::array<double*, Dim> change;
+  for (int a = 0; a < Dim; ++a) change[a] = columns.data(acceleration_, a);
+  scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
+  scene.shape->gather_divergence(scene.view(block), work.motion_tile.data(), columns.data(divergence_), change);
+  return sum(scene, b, block, kick, relative, equation);
+}
+
+template <int Dim>
+void PoreWater<Dim>::collect_at_rest(Scene<Dim>& scene, PressureEquation<Dim>& equation) {
+  Columns& columns = scene.particles.columns;
+  std::ranges::fill(columns.values(divergence_), 0.0);
+  for (int a = 0; a < Dim; ++a) std::ranges::fill(columns.values(acceleration_, a), 0.0);
+  for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b)
+    if (equation.is_wet(b)) sum(scene, b, scene.blocks.particle_blocks()[b], 1, {}, equation);
+}
+
+template <int Dim>
+double PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
+                           const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation) {
   CellSums<Dim>* const cells = equation.cell_sums(b);
   std::fill_n(cells, PressureGrid<Dim>::cell_tile, CellSums<Dim>{});
   Columns& columns = scene.particles.columns;
   const BlockParticles<Dim> view = scene.view(block);
-  std::array<double*, Dim> change;
+  std::array<const double*, Dim> change;
   for (int a = 0; a < Dim; ++a) change[a] = columns.data(acceleration_, a);
-  scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
-  scene.shape->gather_divergence(view, work.motion_tile.data(), columns.data(divergence_), change);
 
   const double* volume = columns.data(scene.particles.volume);
   const double* mass = columns.data(scene.particles.mass);
   const double* porosity = columns.data(porosity_);
   const double* wet = columns.data(wet_);
   double* wet_volume = columns.data(wet_volume_);
+  std::array<const double*, Dim> slope;
+  for (int a = 0; a < Dim; ++a) slope[a] = columns.data(pressure_gradient_, a);
+  double dissipated = 0;
   const double compressibility = water_.compressibility();
   const double own = relative[0] != nullptr ? 1 : 0;  // inertia of the water's own
   for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
@@ -260,6 +324,8 @@ void PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlo
         cell.mobility[a] += v * mobile;
         const double drive = water_.density * (scene.gravity[a] - change[a][p] / kick);
         cell.push[a] += v * mobile * (drive + (own != 0 ? inertial * n * relative[a][p] : 0));
+        const double flux = own != 0 ? n * relative[a][p] : k_over_weight[a] * (drive - slope[a][p]);
+        dissipated += v * flux * flux * resistance;
       }
     }
   }
@@ -273,6 +339,7 @@ void PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlo
   in.affine.fill(columns.data(zero_));
   for (int a = 0; a < Dim; ++a) in.affine[static_cast<std::size_t>(a)] = columns.data(pressure_gradient_, a);
   linear_->scatter(ScatterWhat::momentum, in, 0, equation.vertex_tile(b), nullptr);
+  return dissipated;
 }
 
 // ---- volumes ----

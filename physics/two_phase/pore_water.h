@@ -29,7 +29,8 @@ class PoreWater {
   void set_initial_pressure(Scene<Dim>& scene);
 
   /// What pore pressure and outside pressure do to the skeleton.
-  SkeletonLoads<Dim> skeleton_loads(Scene<Dim>& scene, const ExternalPressure<Dim>& outside);
+  SkeletonLoads<Dim> skeleton_loads(Scene<Dim>& scene, const ExternalPressure<Dim>& outside,
+                                    std::vector<Workspace<Dim>>& workspaces);
 
   const std::vector<PoreSpace>& spaces() const { return spaces_; }
   ColumnId inertia() const { return inertia_; }
@@ -45,17 +46,26 @@ class PoreWater {
   std::vector<char> wet_blocks(const Scene<Dim>& scene) const;
 
   /// Forces on the nodes from the total stress sigma' - beta p, from outside pressure and its gradient.
-  void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double increment,
+  void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile, double increment,
                       const ExternalPressure<Dim>& outside);
 
   /// Particles of a block to its cells and vertices: eqs. (43)-(47). The nodes have the velocities of the predictor.
   /// `relative` holds the velocities of the water relative to the solid, or nulls where it has no inertia of its own.
-  void collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work, double kick,
-               const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
+  /// Returns the power that the flow through the pores dissipates [W].
+  double collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work, double kick,
+                 const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
+
+  /// The same for all blocks, with soil and water at rest.
+  void collect_at_rest(Scene<Dim>& scene, PressureEquation<Dim>& equation);
+  /// Particles whose pressure, as taken, is not positive hold no water.
+  void dry_above_zero_pressure(Scene<Dim>& scene);
 
   /// The new pressure from the vertices, and the forces of what it adds to the old one.
   void correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
                double increment, const PressureEquation<Dim>& equation);
+  /// Forces of the new pressure alone, to the force tile of `nodes`; after `correct`.
+  void scatter_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
+                        const ExternalPressure<Dim>& outside, NodeFields<Dim>& nodes);
   /// Pressure and its gradient at the particles, without forces: at the start.
   void take_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
                      const PressureEquation<Dim>& equation);
@@ -78,9 +88,11 @@ class PoreWater {
   std::array<double, Dim> mobility(const PoreSpace& space, double porosity) const;
 
  private:
+  void take_outside_pressure(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
+                             const ExternalPressure<Dim>& outside);
+  double sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
+             const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
   void zero_forces(const Scene<Dim>& scene, Lane* tile) const;
-  template <class Visit>
-  void for_wet(const Scene<Dim>& scene, const ParticleBlock<Dim>& block, const Visit& visit) const;
 
   const WaterCase& water_;
   std::vector<PoreSpace> spaces_;
@@ -89,7 +101,7 @@ class PoreWater {
 
   ColumnId pressure_, pressure_gradient_, porosity_, solid_mass_, inertia_, wet_;         // state
   ColumnId wet_volume_, divergence_, acceleration_, new_pressure_, total_stress_, zero_;  // derived
-  ColumnId body_force_;
+  ColumnId outside_pressure_, body_force_;
 };
 
 }  // namespace sluice

@@ -7,6 +7,7 @@
 
 #include "core/case/case_schema.h"
 #include "core/parallel/parallel.h"
+#include "physics/two_phase/steady_seepage.h"
 
 namespace sluice {
 
@@ -29,33 +30,11 @@ void parallel_shares(std::size_t count, const Body& body) {
   });
 }
 
-/// Integrals over a cell of products of the slopes, along `axis`, of the linear functions of corners m and n.
-template <int Dim>
-double slope_product(const Vector<Dim>& h, int axis, int m, int n) {
-  double product = 1;
-  for (int a = 0; a < Dim; ++a) {
-    const bool same = (m >> a & 1) == (n >> a & 1);
-    if (a == axis)
-      product *= (same ? 1 : -1) / h[a];
-    else
-      product *= h[a] * (same ? 1.0 / 3 : 1.0 / 6);
-  }
-  return product;
-}
-
 }  // namespace
 
 template <int Dim>
-PressureEquation<Dim>::PressureEquation(const WaterCase& water, const GridGeometry<Dim>& grid)
-    : water_(water), geometry_(grid), solver_(water.solver) {
-  for (int a = 0; a < Dim; ++a)
-    for (int m = 0; m < Grid::corners; ++m) {
-      for (int n = 0; n < Grid::corners; ++n)
-        laplacian_[static_cast<std::size_t>(a)][static_cast<std::size_t>(m)][static_cast<std::size_t>(n)] =
-            slope_product<Dim>(grid.cell, a, m, n);
-      const double area = grid.cell_volume() / grid.cell[a] / (Grid::corners / 2);
-      slope_[static_cast<std::size_t>(a)][static_cast<std::size_t>(m)] = (m >> a & 1) != 0 ? area : -area;
-    }
+PressureEquation<Dim>::PressureEquation(const WaterCase& water, const GridGeometry<Dim>& grid, double gravity)
+    : water_(water), geometry_(grid), unit_weight_(-water.density * gravity), integrals_(grid), solver_(water.solver) {
   const auto names = face_words(Dim);
   for (std::size_t f = 0; f < names.size(); ++f) {
     const auto found = water.faces.find(names[f]);
@@ -218,7 +197,7 @@ Vector<Dim> PressureEquation<Dim>::position(const Index<Dim>& place) const {
 template <int Dim>
 void PressureEquation<Dim>::classify(const PressureStep& step) {
   const std::size_t count = grid_.vertices().size();
-  const double g = 9.81 * water_.density;
+  const double g = unit_weight_;
   fill_.resize(count), kind_.resize(count), given_.resize(count), old_.resize(count), pressure_.resize(count);
   parallel_shares(count, [&](std::size_t v) {
     const auto& vertex = grid_.vertices()[v];
@@ -232,9 +211,11 @@ void PressureEquation<Dim>::classify(const PressureStep& step) {
         const WaterFace* const face = faces_[static_cast<std::size_t>(2 * a + side)];
         if (face == nullptr || !on_face(vertex.place, a, side)) continue;
         const double head = face->head ? face->head->at(step.time) - position(vertex.place)[Dim - 1] : 0;
-        if (face->pressure || head > 0) {
+        // Above its level, water leaves through the face where it has pressure: a seepage face.
+        const bool seeps = face->head && head <= 0 && old_[v] > 0;
+        if (face->pressure || head > 0 || seeps) {
           kind_[v] = Kind::given;
-          given_[v] = face->pressure ? face->pressure->at(step.time) : g * head;
+          given_[v] = face->pressure ? face->pressure->at(step.time) : g * std::max(0.0, head);
         }
       }
   });
@@ -250,13 +231,13 @@ typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Gr
     const CellState& cell = cells_[static_cast<std::size_t>(vertex.cell[k])];
     const std::size_t m = Grid::corners - 1 - k;
     row.storage += cell.storage * geometry_.cell_volume() / Grid::corners;
-    for (std::size_t a = 0; a < Dim; ++a) row.push += slope_[a][m] * cell.push[a];
+    for (std::size_t a = 0; a < Dim; ++a) row.push += integrals_.slope[a][m] * cell.push[a];
     for (std::size_t n = 0; n < Grid::corners; ++n) {
       std::size_t place = 0;
       for (int a = Dim - 1; a >= 0; --a) place = 3 * place + 1 + (n >> a & 1) - (m >> a & 1);
       for (std::size_t a = 0; a < Dim; ++a) {
-        row.implicit[place] += cell.implicit[a] * laplacian_[a][m][n];
-        row.old[place] += cell.old[a] * laplacian_[a][m][n];
+        row.implicit[place] += cell.implicit[a] * integrals_.laplacian[a][m][n];
+        row.old[place] += cell.old[a] * integrals_.laplacian[a][m][n];
       }
     }
   }
@@ -406,6 +387,16 @@ void PressureEquation<Dim>::extrapolate(const ExternalPressure<Dim>& outside, do
     }
     pressure_[j] = weight > 0 ? sum / weight : outside.of_ponds(position(vertex.place), time);
   });
+}
+
+template <int Dim>
+double PressureEquation<Dim>::solve_steady(Scene<Dim>& scene, const ExternalPressure<Dim>& outside) {
+  if (!covered(scene)) rebuild(scene);
+  if (grid_.empty()) return 0;
+  sum_tiles();
+  SteadySeepage found = solve_steady_seepage(grid_, sums_, geometry_, water_, outside, unit_weight_, scene.time);
+  pressure_ = std::move(found.pressure);
+  return found.discharge;
 }
 
 template <int Dim>

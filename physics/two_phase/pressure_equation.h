@@ -15,6 +15,7 @@
 #include "core/output/archive.h"
 #include "core/simulation/scene.h"
 #include "physics/loads/external_pressure.h"
+#include "physics/two_phase/corner_integrals.h"
 #include "physics/two_phase/pressure_grid.h"
 #include "physics/two_phase/water.h"
 #include "solvers/lagged_cholesky.h"
@@ -52,7 +53,8 @@ struct PressureStep {
 template <int Dim>
 class PressureEquation {
  public:
-  PressureEquation(const WaterCase& water, const GridGeometry<Dim>& grid);
+  /// `gravity` is the component along the last axis [m/s2].
+  PressureEquation(const WaterCase& water, const GridGeometry<Dim>& grid, double gravity);
 
   /// After blocks have changed: finds again where everything is. `wet` says which blocks hold water.
   void prepare(const Scene<Dim>& scene, const std::vector<char>& wet);
@@ -64,6 +66,9 @@ class PressureEquation {
 
   /// Throws CaseError if nothing holds the pressure of a closed region of incompressible water.
   void solve(Scene<Dim>& scene, const ExternalPressure<Dim>& outside, const PressureStep& step);
+
+  /// The pressure of steady seepage, from sums collected at rest; returns the discharge [m3/s].
+  double solve_steady(Scene<Dim>& scene, const ExternalPressure<Dim>& outside);
 
   /// Fills a tile of motion lanes with the pressure.
   void load(std::size_t block, Lane* tile) const;
@@ -118,10 +123,8 @@ class PressureEquation {
 
   const WaterCase& water_;
   GridGeometry<Dim> geometry_;
-  std::array<std::array<std::array<double, Grid::corners>, Grid::corners>, Dim>
-      laplacian_;  ///< by axis, of a cell [m^(d-2)]
-  std::array<std::array<double, Grid::corners>, Dim>
-      slope_;                                      ///< integral of the slope of a corner's function [m^(d-1)]
+  double unit_weight_;  // of the water [N/m3]
+  CornerIntegrals<Dim> integrals_;
   std::array<const WaterFace*, 2 * Dim> faces_{};  ///< null: impermeable
 
   PressureGrid<Dim> grid_;

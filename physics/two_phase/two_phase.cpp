@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/simulation/energy.h"
 
@@ -27,7 +28,7 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
       pores_(water_, read_pore_spaces(definition, liquids(stress_.materials())), stress_.materials()),
       relative_(definition, water_, pores_),
       outside_(loads_, water_.ponds, -water_.density * definition.gravity.back(), grid_of<Dim>(definition.grid)),
-      pressure_(water_, grid_of<Dim>(definition.grid)) {
+      pressure_(water_, grid_of<Dim>(definition.grid), definition.gravity.back()) {
   for (int a = 0; a < Dim; ++a) gravity_[a] = definition.gravity[static_cast<std::size_t>(a)];
 }
 
@@ -49,9 +50,24 @@ template <int Dim>
 void TwoPhase<Dim>::initialise(Scene<Dim>& scene) {
   pores_.fill(scene);
   pores_.set_initial_pressure(scene);
-  SkeletonLoads<Dim> loads = pores_.skeleton_loads(scene, outside_);
-  apply_initial_stress(initial_stress_, scene, stress_.materials(), loads);
+  if (water_.initial.method == InitialPressure::Method::steady_seepage) start_seepage(scene);
+  activate_blocks(scene);
+  apply_initial_stress(initial_stress_, scene, stress_.materials(),
+                       pores_.skeleton_loads(scene, outside_, stress_.workspaces()));
   stress_.initialise(scene);
+}
+
+/// Steady seepage decides which part of the soil is wet, too.
+template <int Dim>
+void TwoPhase<Dim>::start_seepage(Scene<Dim>& scene) {
+  activate_blocks(scene);
+  pressure_.prepare(scene, pores_.wet_blocks(scene));
+  pores_.collect_at_rest(scene, pressure_);
+  discharge_ = pressure_.solve_steady(scene, outside_);
+  for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+    pores_.take_pressure(scene, b, block, work, pressure_);
+  });
+  pores_.dry_above_zero_pressure(scene);
 }
 
 // ---- the step ----
@@ -89,8 +105,8 @@ void TwoPhase<Dim>::step_explicit(Scene<Dim>& scene, double dt) {
 /// Velocities of the nodes under gravity, effective stress and the old pressure, eq. (41).
 template <int Dim>
 void TwoPhase<Dim>::predict(Scene<Dim>& scene, double kick) {
-  const auto forces = [&](std::size_t b, const ParticleBlock<Dim>& block) {
-    pores_.scatter_forces(scene, b, block, water_.increment, outside_);
+  const auto forces = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
+    pores_.scatter_forces(scene, b, block, work.motion_tile.data(), water_.increment, outside_);
   };
   scatter(scene, ScatterWhat::momentum);
   const bool stress_first = stress_.timing() == StressTiming::usf;
@@ -99,8 +115,7 @@ void TwoPhase<Dim>::predict(Scene<Dim>& scene, double kick) {
     stress_.update(scene, scene.previous_dt, forces);
   } else {
     const auto timing = scene.clock.time(Stage::scatter);
-    parallel_for(scene.blocks.particle_blocks().size(),
-                 [&](std::size_t b) { forces(b, scene.blocks.particle_blocks()[b]); });
+    for_each_block(scene, stress_.workspaces(), forces);
   }
   advance_nodes(scene, kick, !stress_first, true);
   if (!relative_.active()) return;
@@ -114,9 +129,11 @@ void TwoPhase<Dim>::project(Scene<Dim>& scene, double dt, double kick) {
   {
     const auto timing = scene.clock.time(Stage::pressure_assembly);
     const auto relative = relative_.velocity(scene.particles);
+    power_.assign(scene.blocks.particle_blocks().size(), 0);
     for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
-      if (pressure_.is_wet(b)) pores_.collect(scene, b, block, work, kick, relative, pressure_);
+      if (pressure_.is_wet(b)) power_[b] = pores_.collect(scene, b, block, work, kick, relative, pressure_);
     });
+    dissipated_ += kick * std::accumulate(power_.begin(), power_.end(), 0.0);
   }
   pressure_.solve(scene, outside_, {dt, kick, scene.time + dt, water_.increment, water_.stabilisation});
 }
@@ -124,13 +141,16 @@ void TwoPhase<Dim>::project(Scene<Dim>& scene, double dt, double kick) {
 /// The nodes take up the new pressure, eq. (48).
 template <int Dim>
 void TwoPhase<Dim>::correct(Scene<Dim>& scene, double kick) {
+  const bool friction = scene.faces.any_friction();
+  if (friction) wall_.resize(scene.blocks, scene.shape->degree());
   {
     const auto timing = scene.clock.time(Stage::scatter);
     for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
       pores_.correct(scene, b, block, work, water_.increment, pressure_);
+      if (friction) pores_.scatter_pressure(scene, b, block, outside_, wall_);
     });
   }
-  correct_nodes(scene, kick);
+  correct_nodes(scene, kick, friction ? &wall_ : nullptr);
   if (relative_.active()) relative_.advance(scene, stress_.workspaces(), kick);
 }
 
@@ -185,13 +205,16 @@ std::vector<TimeStepLimit> TwoPhase<Dim>::hard_limits(const Scene<Dim>& scene) c
 
 template <int Dim>
 void TwoPhase<Dim>::store(Archive& archive) const {
-  archive.reals["two_phase"] = {stress_.fastest_wave()};
+  archive.reals["two_phase"] = {stress_.fastest_wave(), dissipated_, discharge_};
   pressure_.store(archive);
 }
 
 template <int Dim>
 void TwoPhase<Dim>::restore(const Archive& archive) {
-  stress_.restore_fastest_wave(archive.reals.at("two_phase").at(0));
+  const auto& own = archive.reals.at("two_phase");
+  stress_.restore_fastest_wave(own.at(0));
+  dissipated_ = own.at(1);
+  discharge_ = own.at(2);
   pressure_.restore(archive);
   placed_ = false;
 }
@@ -201,7 +224,8 @@ std::vector<std::pair<std::string, double>> TwoPhase<Dim>::energies(const Scene<
   return {{"kinetic", kinetic_energy(scene)},
           {"elastic", stress_.materials().stored_energy(scene.particles)},
           {"potential", potential_energy(scene)},
-          {"water_compression", pores_.compression_energy(scene.particles)}};
+          {"water_compression", pores_.compression_energy(scene.particles)},
+          {"seepage_dissipation", dissipated_}};
 }
 
 template <int Dim>
@@ -221,7 +245,8 @@ std::vector<std::pair<std::string, double>> TwoPhase<Dim>::totals() const {
           {"pressure_factor_nonzeros", static_cast<double>(s.factor_nonzeros)},
           {"pressure_analyze_seconds", s.analyze_seconds},
           {"pressure_factorize_seconds", s.factorize_seconds},
-          {"pressure_solve_seconds", s.solve_seconds}};
+          {"pressure_solve_seconds", s.solve_seconds},
+          {"initial_discharge", discharge_}};
 }
 
 template <int Dim>

@@ -37,6 +37,7 @@ class TwoPhase final : public PhysicsModule<Dim> {
   std::vector<std::pair<std::string, Node>> resolved_sections() const override;
 
  private:
+  void start_seepage(Scene<Dim>& scene);
   void step_projected(Scene<Dim>& scene, double dt);
   void step_explicit(Scene<Dim>& scene, double dt);
   void predict(Scene<Dim>& scene, double kick);
@@ -54,8 +55,12 @@ class TwoPhase final : public PhysicsModule<Dim> {
   RelativeMotion<Dim> relative_;
   ExternalPressure<Dim> outside_;
   PressureEquation<Dim> pressure_;
+  NodeFields<Dim> wall_;       // forces of the pressure alone, which presses on faces without friction
+  std::vector<double> power_;  // dissipated by the flow, by block [W]
+  double dissipated_ = 0;      // [J], since the start
   Vector<Dim> gravity_{};
-  bool placed_ = false;  // the pressure equation knows the blocks
+  double discharge_ = 0;  // of the steady seepage at the start [m3/s]
+  bool placed_ = false;   // the pressure equation knows the blocks
 };
 
 }  // namespace sluice

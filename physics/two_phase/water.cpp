@@ -90,7 +90,10 @@ const Schema<InitialPressure>& initial_schema() {
               none)
           .quantity("pressure", &InitialPressure::pressure, unit::stress, any_number, "For `uniform`.", 0.0)
           .quantity("level", &InitialPressure::level, unit::length, any_number,
-                    "For `hydrostatic` without a water table: height where the pressure is zero.");
+                    "For `hydrostatic` without a water table: height where the pressure is zero.")
+          .quantity("suction", &InitialPressure::suction, unit::stress, at_least(0),
+                    "For `hydrostatic`: most suction above the level, where the soil is saturated all the same.",
+                    Absent{"unlimited"});
   return schema;
 }
 

@@ -33,8 +33,9 @@ struct WaterFace {
 struct InitialPressure {
   enum class Method { none, uniform, hydrostatic, steady_seepage };
   Method method = Method::none;
-  double pressure = 0;          ///< [Pa], for `uniform`
-  std::optional<double> level;  ///< [m], for `hydrostatic` without a water table
+  double pressure = 0;            ///< [Pa], for `uniform`
+  std::optional<double> level;    ///< [m], for `hydrostatic` without a water table
+  std::optional<double> suction;  ///< [Pa], for `hydrostatic`: the pressure does not go below minus this
 };
 
 struct WaterCase {

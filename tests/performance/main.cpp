@@ -1,6 +1,7 @@
 /// Measures particle-steps per second on the dam, against the plain kernel of plain_kernel.h, in one run.
 ///
 ///   sluice_performance [--smoke] [--sizes 1 0.25 0.125]
+///   sluice_performance --solver      the sparse solvers instead (solver.h)
 ///
 /// Every figure is a rate of bursts taken in turn (plain, linear, quadratic, …, plain, …), so that a machine whose
 /// speed drifts disturbs all alike; ratios are medians of the ratios within a turn. The state is that of the dam while
@@ -19,6 +20,7 @@
 #include "core/parallel/parallel.h"
 #include "core/simulation/simulation.h"
 #include "plain_kernel.h"
+#include "solver.h"
 
 namespace {
 
@@ -172,14 +174,18 @@ double compare(double cell, int turns, double seconds, double in_cache_rate) {
 
 int main(int argc, char** argv) {
   std::vector<double> cells;
-  bool smoke = false;
+  bool smoke = false, solver = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--smoke")
       smoke = true;
+    else if (word == "--solver")
+      solver = true;
     else if (word != "--sizes")
       cells.push_back(std::stod(word));
   }
+  if (solver || smoke) measure_solvers(smoke);
+  if (solver) return 0;
   if (cells.empty()) cells = smoke ? std::vector<double>{1} : std::vector<double>{1, 0.25, 0.125};
   double in_cache = 0;
   for (const double cell : cells) {
