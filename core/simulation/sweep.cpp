@@ -5,14 +5,6 @@
 
 namespace sluice {
 
-namespace {
-
-/// Blocks of particles that the first stage does at a time. Few, so that they stay in the cache until the last stage
-/// has done them; but enough to keep some threads busy between two waits for each other.
-constexpr std::size_t blocks_per_thread = 96;
-
-}  // namespace
-
 /// The blocks [0, n) that a stage can do once the stage before it has done [0, done_before).
 template <int Dim>
 std::size_t Sweep<Dim>::ready(std::size_t stage, std::size_t done_before) const {
@@ -23,7 +15,7 @@ std::size_t Sweep<Dim>::ready(std::size_t stage, std::size_t done_before) const 
 }
 
 template <int Dim>
-void Sweep<Dim>::run() const {
+void Sweep<Dim>::run(std::size_t blocks_per_thread) const {
   const std::size_t count = blocks_.particle_blocks().size();
   const std::size_t stride = blocks_per_thread * static_cast<std::size_t>(thread_count());
   std::vector<std::size_t> done(stages_.size(), 0);
