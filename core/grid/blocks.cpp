@@ -11,14 +11,33 @@ namespace sluice {
 
 namespace {
 
-/// A block's place as one number, last axis first, so that numbers follow the rows of the grid.
+/// Gives each block a number. Numbers follow the longest axis of the grid slowest: consecutive blocks then form thin
+/// slices, and a sweep over them (core/simulation/sweep.h) has few blocks between a block and its neighbours.
 template <int Dim>
-std::int64_t key_of(const Index<Dim>& block) {
-  constexpr std::int64_t range = std::int64_t{1} << 20;
-  std::int64_t key = 0;
-  for (int a = Dim - 1; a >= 0; --a) key = key * range + (block[a] + 1);
-  return key;
-}
+class Numbering {
+ public:
+  explicit Numbering(const GridGeometry<Dim>& grid) {
+    std::iota(axes_.begin(), axes_.end(), 0);
+    std::stable_sort(axes_.begin(), axes_.end(), [&](int a, int b) { return grid.cells[a] < grid.cells[b]; });
+  }
+  std::int64_t key(const Index<Dim>& block) const {
+    std::int64_t key = 0;
+    for (int a = Dim - 1; a >= 0; --a) key = key * range + (block[axes_[a]] + 1);
+    return key;
+  }
+  Index<Dim> block(std::int64_t key) const {
+    Index<Dim> block;
+    for (int a = 0; a < Dim; ++a) {
+      block[axes_[a]] = static_cast<int>(key % range) - 1;
+      key /= range;
+    }
+    return block;
+  }
+
+ private:
+  static constexpr std::int64_t range = std::int64_t{1} << 20;
+  Index<Dim> axes_;  // fastest first
+};
 
 /// The particle's block, and its cell within the block, first axis fastest.
 struct Address {
@@ -29,7 +48,8 @@ struct Address {
 template <int Dim>
 class Addresses {
  public:
-  Addresses(const Particles& particles, const GridGeometry<Dim>& grid) : grid_(grid) {
+  Addresses(const Particles& particles, const GridGeometry<Dim>& grid, const Numbering<Dim>& numbering)
+      : grid_(grid), numbering_(numbering) {
     for (int a = 0; a < Dim; ++a) x_[a] = particles.columns.data(particles.position, a);
   }
   Address operator()(std::size_t p) const {
@@ -41,24 +61,14 @@ class Addresses {
       block[a] = cell[a] / block_width<Dim>;
       within = within * block_width<Dim> + cell[a] % block_width<Dim>;
     }
-    return {key_of<Dim>(block), within};
+    return {numbering_.key(block), within};
   }
 
  private:
   const GridGeometry<Dim>& grid_;
+  const Numbering<Dim>& numbering_;
   std::array<const double*, Dim> x_;
 };
-
-template <int Dim>
-Index<Dim> block_of(std::int64_t key) {
-  constexpr std::int64_t range = std::int64_t{1} << 20;
-  Index<Dim> block;
-  for (int a = 0; a < Dim; ++a) {
-    block[a] = static_cast<int>(key % range) - 1;
-    key /= range;
-  }
-  return block;
-}
 
 /// Calls visit(position in the neighbourhood, shift) for every shift in {-1, 0, 1}^Dim, first axis fastest.
 template <int Dim, class Visit>
@@ -75,7 +85,8 @@ void for_neighbourhood(const Visit& visit) {
 template <int Dim>
 void Blocks<Dim>::sort(Particles& particles, const GridGeometry<Dim>& grid, int degree) {
   const std::size_t count = particles.size();
-  const Addresses<Dim> address_of(particles, grid);
+  const Numbering<Dim> numbering(grid);
+  const Addresses<Dim> address_of(particles, grid, numbering);
   std::vector<Address> address(count);
   parallel_for(count, [&](std::size_t p) { address[p] = address_of(p); });
 
@@ -110,7 +121,7 @@ void Blocks<Dim>::sort(Particles& particles, const GridGeometry<Dim>& grid, int 
   batches_.clear();
   for (std::size_t r = 0; r < keys.size(); ++r) {
     ParticleBlock<Dim> block{};
-    block.first_cell = block_of<Dim>(keys[r]);
+    block.first_cell = numbering.block(keys[r]);
     for (int& c : block.first_cell) c *= block_width<Dim>;
     block.begin = start[r * materials];
     block.end = start[(r + 1) * materials];
@@ -121,26 +132,28 @@ void Blocks<Dim>::sort(Particles& particles, const GridGeometry<Dim>& grid, int 
     block.last_batch = static_cast<std::uint32_t>(batches_.size());
     particle_blocks_.push_back(block);
   }
-  connect(degree);
+  connect(grid, degree);
 }
 
 template <int Dim>
-void Blocks<Dim>::connect(int degree) {
+void Blocks<Dim>::connect(const GridGeometry<Dim>& grid, int degree) {
   constexpr int width = block_width<Dim>;
   const int tile = tile_width<Dim>(degree);
-  std::map<std::int64_t, std::int32_t> slot;  // ordered, so that node blocks follow the rows of the grid
+  const Numbering<Dim> numbering(grid);
+  std::map<std::int64_t, std::int32_t> slot;  // ordered, so that node blocks are numbered as particle blocks are
   const auto shifted = [](const ParticleBlock<Dim>& block, const Index<Dim>& shift) {
     Index<Dim> b;
     for (int a = 0; a < Dim; ++a) b[a] = block.first_cell[a] / width + shift[a];
     return b;
   };
   for (const auto& block : particle_blocks_)
-    for_neighbourhood<Dim>([&](int, const Index<Dim>& shift) { slot.emplace(key_of<Dim>(shifted(block, shift)), 0); });
+    for_neighbourhood<Dim>(
+        [&](int, const Index<Dim>& shift) { slot.emplace(numbering.key(shifted(block, shift)), 0); });
   node_blocks_.clear();
   for (auto& [key, number] : slot) {
     number = static_cast<std::int32_t>(node_blocks_.size());
     NodeBlock<Dim> nodes{};
-    nodes.first_node = block_of<Dim>(key);
+    nodes.first_node = numbering.block(key);
     for (int& i : nodes.first_node) i *= width;
     nodes.low.fill(width);
     nodes.high.fill(0);
@@ -152,7 +165,7 @@ void Blocks<Dim>::connect(int degree) {
     auto& block = particle_blocks_[b];
     largest_block_ = std::max<std::size_t>(largest_block_, block.end - block.begin);
     for_neighbourhood<Dim>([&](int n, const Index<Dim>& shift) {
-      const std::int32_t number = slot.at(key_of<Dim>(shifted(block, shift)));
+      const std::int32_t number = slot.at(numbering.key(shifted(block, shift)));
       block.nodes[static_cast<std::size_t>(n)] = number;
       auto& nodes = node_blocks_[static_cast<std::size_t>(number)];
       nodes.particles[static_cast<std::size_t>(neighbourhood<Dim> - 1 - n)] = static_cast<std::int32_t>(b);
@@ -163,6 +176,26 @@ void Blocks<Dim>::connect(int degree) {
       }
     });
   }
+  note_needs();
+}
+
+template <int Dim>
+void Blocks<Dim>::note_needs() {
+  const auto note = [](const auto& blocks, const auto& neighbours, std::vector<std::size_t>& needed) {
+    needed.clear();
+    std::int32_t last = -1;
+    for (const auto& block : blocks) {
+      for (const std::int32_t number : block.*neighbours) last = std::max(last, number);
+      needed.push_back(static_cast<std::size_t>(last + 1));
+    }
+  };
+  note(particle_blocks_, &ParticleBlock<Dim>::nodes, nodes_needed_);
+  note(node_blocks_, &NodeBlock<Dim>::particles, particles_needed_);
+}
+
+template <int Dim>
+std::size_t Blocks<Dim>::ready(const std::vector<std::size_t>& needed, std::size_t done) {
+  return static_cast<std::size_t>(std::upper_bound(needed.begin(), needed.end(), done) - needed.begin());
 }
 
 template <int Dim>
@@ -176,7 +209,8 @@ std::vector<std::int64_t> Blocks<Dim>::record() const {
 }
 
 template <int Dim>
-void Blocks<Dim>::restore(const std::vector<std::int64_t>& record, const Particles& particles, int degree) {
+void Blocks<Dim>::restore(const std::vector<std::int64_t>& record, const Particles& particles,
+                          const GridGeometry<Dim>& grid, int degree) {
   particle_blocks_.clear();
   batches_.clear();
   std::uint32_t p = 0;
@@ -194,7 +228,7 @@ void Blocks<Dim>::restore(const std::vector<std::int64_t>& record, const Particl
     block.last_batch = static_cast<std::uint32_t>(batches_.size());
     particle_blocks_.push_back(block);
   }
-  connect(degree);
+  connect(grid, degree);
 }
 
 template class Blocks<2>;

@@ -51,17 +51,27 @@ class Blocks {
   const std::vector<Batch>& batches() const { return batches_; }
   std::size_t largest_block() const { return largest_block_; }
 
+  /// The blocks of nodes [0, n) whose sums are complete once particle blocks [0, done) have filled their tiles.
+  std::size_t nodes_ready(std::size_t done) const { return ready(particles_needed_, done); }
+  /// The blocks of particles [0, n) whose tiles are complete once node blocks [0, done) are.
+  std::size_t particles_ready(std::size_t done) const { return ready(nodes_needed_, done); }
+
   /// Which particles are in which block is history (they may have wandered since the last sort), so a checkpoint
   /// keeps it.
   std::vector<std::int64_t> record() const;
-  void restore(const std::vector<std::int64_t>& record, const Particles& particles, int degree);
+  void restore(const std::vector<std::int64_t>& record, const Particles& particles, const GridGeometry<Dim>& grid,
+               int degree);
 
  private:
-  void connect(int degree);
+  void connect(const GridGeometry<Dim>& grid, int degree);
+  void note_needs();
+  static std::size_t ready(const std::vector<std::size_t>& needed, std::size_t done);
 
   std::vector<ParticleBlock<Dim>> particle_blocks_;
   std::vector<NodeBlock<Dim>> node_blocks_;
   std::vector<Batch> batches_;
+  std::vector<std::size_t> nodes_needed_;      // of particle blocks [0, b]: the blocks of nodes under them are [0, n)
+  std::vector<std::size_t> particles_needed_;  // of node blocks [0, b]: the blocks of particles around are [0, n)
   std::size_t largest_block_ = 0;
 };
 

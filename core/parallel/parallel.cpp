@@ -34,10 +34,13 @@ void wait_until(const std::atomic<Word>& word, const Done& done) {
   }
 }
 
+/// What several threads write begins on a cache line of its own.
+constexpr std::size_t cache_line = 64;
+
 /// The items that a thread begins with; others may take from it. `next` holds the number of the call in its upper half
 /// and the next free item in its lower half, so that nobody takes an item of another call than the one that he was
 /// called to.
-struct alignas(64) Share {
+struct alignas(cache_line) Share {
   std::atomic<std::uint64_t> next{0};
   std::atomic<std::uint32_t> end{0};
 };
@@ -62,8 +65,6 @@ class Team {
     assert(count < (std::size_t{1} << 31));
     const std::uint64_t threads = shares_.size(), items = count, call = calls_.load(std::memory_order_relaxed) + 1;
     body_ = body;
-    chunk_.store(static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / (threads * 64))),
-                 std::memory_order_relaxed);
     undone_.store(static_cast<std::uint32_t>(items), std::memory_order_relaxed);
     // `next` before `end`: a member that is late from the last call must not find room in a share whose number is still
     // old.
@@ -95,27 +96,31 @@ class Team {
   void work(std::uint32_t call, int thread) {
     for (std::size_t k = 0; k < shares_.size(); ++k) {
       Share& share = shares_[(static_cast<std::size_t>(thread) + k) % shares_.size()];
+      std::uint32_t done = 0;
       std::uint64_t next = share.next.load(std::memory_order_acquire);
       for (;;) {
-        const std::uint32_t begin = static_cast<std::uint32_t>(next);
-        const std::uint32_t chunk = chunk_.load(std::memory_order_relaxed),
-                            last = share.end.load(std::memory_order_acquire);
+        const std::uint32_t begin = static_cast<std::uint32_t>(next), last = share.end.load(std::memory_order_acquire);
         if (next >> 32 != call || begin >= last) break;
-        const std::uint32_t end = std::min(begin + chunk, last);
-        // If this succeeds the call is not over, and body_, chunk_ and end are those of the call.
+        // Large bites first, and small ones to end together. Items are not alike: no bite may be a large part of a
+        // share.
+        const std::uint32_t end = begin + std::max<std::uint32_t>(1, (last - begin) / 8);
+        // If this succeeds the call is not over, and body_ and last are those of the call.
         if (!share.next.compare_exchange_weak(next, std::uint64_t{call} << 32 | end, std::memory_order_acq_rel))
           continue;
         next = std::uint64_t{call} << 32 | end;
         body_.work(body_.body, begin, end, thread);
-        if (undone_.fetch_sub(end - begin, std::memory_order_acq_rel) == end - begin) undone_.notify_all();
+        done += end - begin;
       }
+      // Once a share, not once a bite: every thread writes here.
+      if (done > 0 && undone_.fetch_sub(done, std::memory_order_acq_rel) == done) undone_.notify_all();
     }
   }
 
   std::vector<Share> shares_;
   std::vector<std::thread> members_;
   LoopBody body_{};
-  std::atomic<std::uint32_t> chunk_{1}, calls_{0}, undone_{0};
+  std::atomic<std::uint32_t> calls_{0};
+  alignas(cache_line) std::atomic<std::uint32_t> undone_{0};  // items of the call
   std::atomic<bool> closing_{false};
 };
 

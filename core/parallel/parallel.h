@@ -4,7 +4,9 @@
 /// answer is the same, bit for bit, on any number of threads.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 
 namespace sluice {
@@ -36,6 +38,27 @@ void parallel_for(std::size_t count, const Body& body) {
                      }
                    },
                    &body});
+}
+
+/// Consecutive items [begin, end) of a loop.
+struct Items {
+  std::size_t begin = 0, end = std::numeric_limits<std::size_t>::max();
+
+  /// The part of it that a loop over `count` items has.
+  Items within(std::size_t count) const { return {std::min(begin, count), std::min(end, count)}; }
+};
+
+inline constexpr Items everything;
+
+/// The same for the items of a range.
+template <class Body>
+void parallel_for(Items items, const Body& body) {
+  parallel_for(items.end - items.begin, [&](std::size_t i, int thread) {
+    if constexpr (std::is_invocable_v<Body, std::size_t, int>)
+      body(items.begin + i, thread);
+    else
+      body(items.begin + i);
+  });
 }
 
 }  // namespace sluice

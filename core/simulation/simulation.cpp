@@ -76,7 +76,7 @@ class SimulationOf final : public Simulation {
 
   void restore(const Archive& archive) override {
     restore_particles(archive, scene_.particles);
-    scene_.blocks.restore(archive.integers.at("blocks"), scene_.particles, scene_.shape->degree());
+    scene_.blocks.restore(archive.integers.at("blocks"), scene_.particles, scene_.grid, scene_.shape->degree());
     scene_.nodes.resize(scene_.blocks, scene_.shape->degree());
     const auto& step = archive.integers.at("step");
     scene_.step = step[0];

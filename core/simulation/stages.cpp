@@ -15,9 +15,9 @@ bool activate_blocks(Scene<Dim>& scene) {
 }
 
 template <int Dim>
-void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt) {
+void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, Items some) {
   const auto timing = scene.clock.time(Stage::scatter);
-  parallel_for(scene.blocks.particle_blocks().size(), [&](std::size_t b) {
+  parallel_for(some.within(scene.blocks.particle_blocks().size()), [&](std::size_t b) {
     scene.shape->scatter(what, scene.scatter_input(scene.blocks.particle_blocks()[b]), impulse_dt,
                          scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
   });
@@ -90,10 +90,10 @@ double lightest_node(const Scene<Dim>& scene) {
 }  // namespace
 
 template <int Dim>
-void velocity_from_momentum(Scene<Dim>& scene) {
+void velocity_from_momentum(Scene<Dim>& scene, Items some) {
   const auto timing = scene.clock.time(Stage::nodes);
   const double lightest = lightest_node(scene);
-  parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) {
+  parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
     scene.nodes.collect_momentum(scene.blocks, b);
     accelerate<Dim>(block, scene.nodes.momentum(b), nullptr, 0, scene.gravity, lightest, scene.nodes.motion(b));
@@ -102,10 +102,10 @@ void velocity_from_momentum(Scene<Dim>& scene) {
 }
 
 template <int Dim>
-void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force) {
+void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some) {
   const auto timing = scene.clock.time(Stage::nodes);
   const double lightest = lightest_node(scene);
-  parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) {
+  parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
     if (collect_momentum) scene.nodes.collect_momentum(scene.blocks, b);
     if (collect_force) scene.nodes.collect_force(scene.blocks, b);
@@ -170,9 +170,9 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
 
 #define SLUICE_INSTANTIATE(Dim)                                                \
   template bool activate_blocks<Dim>(Scene<Dim>&);                             \
-  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double);                \
-  template void velocity_from_momentum<Dim>(Scene<Dim>&);                      \
-  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool);           \
+  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);         \
+  template void velocity_from_momentum<Dim>(Scene<Dim>&, Items);               \
+  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items);    \
   template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*);     \
   template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&); \
   template MotionUpdate<Dim> motion_update<Dim>(Scene<Dim>&, double, ColumnId);

@@ -24,18 +24,20 @@ inline constexpr double travel_allowance = 0.999 * tile_margin;
 template <int Dim>
 bool activate_blocks(Scene<Dim>& scene);
 
-/// Particles to nodes, eqs. (14)-(16): fills the tiles of all blocks.
+// Each of the following works on all blocks, or on `some` of them: see Sweep.
+
+/// Particles to nodes, eqs. (14)-(16): fills the tiles of the blocks.
 template <int Dim>
-void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt = 0);
+void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt = 0, Items some = everything);
 
 /// Sums the tiles and divides: v = p / m, with the velocities that faces fix, eq. (17).
 template <int Dim>
-void velocity_from_momentum(Scene<Dim>& scene);
+void velocity_from_momentum(Scene<Dim>& scene, Items some = everything);
 
 /// v_new = v + kick (f / m + g), with faces and their friction, eq. (18). With `collect_force` the force tiles are
 /// summed; without, the momentum holds the impulse already.
 template <int Dim>
-void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force);
+void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some = everything);
 
 /// The same once more, from the momentum that the nodes have, with the force tiles added to the forces that they have:
 /// a correction, for example by a pressure that was not known before. `without_friction`, or null, has in its force tiles
@@ -45,9 +47,10 @@ void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_fric
 
 /// Calls body(number of the block, block, workspace of the thread) for every block of particles, in parallel.
 template <int Dim, class Body>
-void for_each_block(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, const Body& body) {
+void for_each_block(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, const Body& body,
+                    Items some = everything) {
   prepare(scene, workspaces);
-  parallel_for(scene.blocks.particle_blocks().size(), [&](std::size_t b, int thread) {
+  parallel_for(some.within(scene.blocks.particle_blocks().size()), [&](std::size_t b, int thread) {
     body(b, scene.blocks.particle_blocks()[b], workspaces[static_cast<std::size_t>(thread)]);
   });
 }

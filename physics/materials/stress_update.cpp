@@ -53,84 +53,122 @@ void StressUpdate<Dim>::declare(Columns& particles, ColumnId inertia) {
   }
 }
 
+// ---- the stages of each way to update: see Sweep ----
+
 template <int Dim>
-void StressUpdate<Dim>::gather_motion(Scene<Dim>& scene, double dt, ColumnId positions) {
+void StressUpdate<Dim>::gather_motion(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
+  sweep.over_particles([this, &scene, dt](Items some) { move(scene, dt, scene.particles.position, some); });
+}
+
+template <int Dim>
+void StressUpdate<Dim>::gather_motion_and_update(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
+  sweep.over_particles([this, &scene, dt](Items some) { move_and_strain(scene, dt, some); });
+  if (f_bar_) sweep.over_particles([this, &scene, dt](Items some) { apply_f_bar(scene, dt, {}, some); });
+}
+
+template <int Dim>
+void StressUpdate<Dim>::gather_motion_and_map_again(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
+  sweep.over_particles([this, &scene, dt](Items some) { move(scene, dt, next_position_, some); });
+  sweep.over_particles([&scene](Items some) { scatter(scene, ScatterWhat::momentum, 0, some); });
+  sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, some); });
+  update(sweep, scene, dt);
+  sweep.over_particles([this, &scene](Items some) { take_next_position(scene, some); });
+}
+
+template <int Dim>
+void StressUpdate<Dim>::update(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt, const AfterBlock& after_block) {
+  sweep.over_particles([this, &scene, dt, after_block](Items some) { strain(scene, dt, after_block, some); });
+  if (f_bar_)
+    sweep.over_particles([this, &scene, dt, after_block](Items some) { apply_f_bar(scene, dt, after_block, some); });
+}
+
+// ---- the stages ----
+
+template <int Dim>
+void StressUpdate<Dim>::move(Scene<Dim>& scene, double dt, ColumnId positions, Items some) {
   const auto timing = scene.clock.time(Stage::gather);
   const MotionUpdate<Dim> update = motion_update(scene, dt, positions);
-  for_each_block(scene, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
+  const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
     const double strain_rate = motion_[b].largest_strain_rate;  // of the stress update, if that came first
     motion_[b] = scene.shape->gather_motion(scene.view(block), work.motion_tile.data(), update);
     motion_[b].largest_strain_rate = strain_rate;
-  });
+  };
+  for_each_block(scene, workspaces_, body, some);
 }
 
 template <int Dim>
-void StressUpdate<Dim>::gather_motion_and_update(Scene<Dim>& scene, double dt) {
-  {
-    const auto timing = scene.clock.time(Stage::gather);
-    const MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position);
-    for_each_block(scene, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
-      const StrainIncrements<Dim> strain = f_bar_ ? kept_strain(scene, block.begin) : work.strain;
-      MotionUpdate<Dim> own = update;
-      own.strain = &strain;
-      if (f_bar_) cells_.locate(scene.view(block));
-      scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
-      motion_[b] = scene.shape->gather_motion(scene.view(block), work.motion_tile.data(), own);
-      if (!f_bar_) stress_[b] = update_block(scene, block, strain, dt);
-    });
-  }
-  if (f_bar_) apply_f_bar(scene, dt, {});
-}
-
-template <int Dim>
-void StressUpdate<Dim>::gather_motion_and_map_again(Scene<Dim>& scene, double dt) {
-  gather_motion(scene, dt, next_position_);
-  scatter(scene, ScatterWhat::momentum);
-  velocity_from_momentum(scene);
-  update(scene, dt);
-  Columns& columns = scene.particles.columns;
-  for (int a = 0; a < Dim; ++a)
-    std::ranges::copy(columns.values(next_position_, a), columns.data(scene.particles.position, a));
-}
-
-template <int Dim>
-void StressUpdate<Dim>::update(Scene<Dim>& scene, double dt, const AfterBlock& after_block) {
-  {
-    const auto timing = scene.clock.time(Stage::stress);
-    for_each_block(scene, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
-      const StrainIncrements<Dim> strain = f_bar_ ? kept_strain(scene, block.begin) : work.strain;
-      scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
-      const double largest = scene.shape->gather_strain(scene.view(block), work.motion_tile.data(), dt, strain);
-      motion_[b].largest_strain_rate = dt > 0 ? largest / dt : 0;
-      if (f_bar_) {
-        cells_.locate(scene.view(block));
-        return;
-      }
+void StressUpdate<Dim>::move_and_strain(Scene<Dim>& scene, double dt, Items some) {
+  const auto timing = scene.clock.time(Stage::gather);
+  const MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position);
+  const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
+    const StrainIncrements<Dim> strain = f_bar_ ? kept_strain(scene, block.begin) : work.strain;
+    MotionUpdate<Dim> own = update;
+    own.strain = &strain;
+    if (f_bar_) cells_.locate(scene.view(block));
+    scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
+    motion_[b] = scene.shape->gather_motion(scene.view(block), work.motion_tile.data(), own);
+    if (f_bar_)
+      add_to_cells(scene, b, block, work);
+    else
       stress_[b] = update_block(scene, block, strain, dt);
-      if (after_block) after_block(b, block, work);
-    });
-  }
-  if (f_bar_) apply_f_bar(scene, dt, after_block);
+  };
+  for_each_block(scene, workspaces_, body, some);
 }
 
-/// F-bar on cells, eq. (26): the volumetric strain increment of each particle gives way to the mean of its cell.
 template <int Dim>
-void StressUpdate<Dim>::apply_f_bar(Scene<Dim>& scene, double dt, const AfterBlock& after_block) {
+void StressUpdate<Dim>::strain(Scene<Dim>& scene, double dt, const AfterBlock& after_block, Items some) {
   const auto timing = scene.clock.time(Stage::stress);
-  const double* volume = scene.particles.columns.data(scene.particles.volume);
-  for_each_block(scene, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
-    double* const dilation = work.numbers.data();
-    volumetric_strain(kept_strain(scene, block.begin), block.end - block.begin, dilation);
-    cells_.add(b, scene.view(block), volume, dilation);
-  });
-  for_each_block(scene, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
+  const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
+    const StrainIncrements<Dim> strain = f_bar_ ? kept_strain(scene, block.begin) : work.strain;
+    scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
+    const double largest = scene.shape->gather_strain(scene.view(block), work.motion_tile.data(), dt, strain);
+    motion_[b].largest_strain_rate = dt > 0 ? largest / dt : 0;
+    if (f_bar_) {
+      cells_.locate(scene.view(block));
+      add_to_cells(scene, b, block, work);
+      return;
+    }
+    stress_[b] = update_block(scene, block, strain, dt);
+    if (after_block) after_block(b, block, work);
+  };
+  for_each_block(scene, workspaces_, body, some);
+}
+
+/// F-bar on cells, eq. (26): the volumetric strain increment of each particle gives way to the mean of its cell. Here
+/// the increments of a block go to the cells.
+template <int Dim>
+void StressUpdate<Dim>::add_to_cells(Scene<Dim>& scene, std::size_t number, const ParticleBlock<Dim>& block,
+                                     Workspace<Dim>& work) {
+  double* const dilation = work.numbers.data();
+  volumetric_strain(kept_strain(scene, block.begin), block.end - block.begin, dilation);
+  cells_.add(number, scene.view(block), scene.particles.columns.data(scene.particles.volume), dilation);
+}
+
+/// Here the means of the cells come back, and stresses follow.
+template <int Dim>
+void StressUpdate<Dim>::apply_f_bar(Scene<Dim>& scene, double dt, const AfterBlock& after_block, Items some) {
+  const auto timing = scene.clock.time(Stage::stress);
+  const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     const StrainIncrements<Dim> strain = kept_strain(scene, block.begin);
     double* const mean = work.numbers.data();
     cells_.mean(scene.blocks, b, scene.view(block), mean);
     set_volumetric_strain(mean, block.end - block.begin, strain);
     stress_[b] = update_block(scene, block, strain, dt);
     if (after_block) after_block(b, block, work);
+  };
+  for_each_block(scene, workspaces_, body, some);
+}
+
+/// MUSL: the particles go where `move` has found that they go.
+template <int Dim>
+void StressUpdate<Dim>::take_next_position(Scene<Dim>& scene, Items some) {
+  Columns& columns = scene.particles.columns;
+  parallel_for(some, [&](std::size_t b) {
+    const auto& block = scene.blocks.particle_blocks()[b];
+    for (int a = 0; a < Dim; ++a)
+      std::copy(columns.data(next_position_, a) + block.begin, columns.data(next_position_, a) + block.end,
+                columns.data(scene.particles.position, a) + block.begin);
   });
 }
 

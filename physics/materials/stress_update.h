@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/simulation/stages.h"
+#include "core/simulation/sweep.h"
 #include "core/transfer/cell_averages.h"
 #include "physics/materials/materials.h"
 
@@ -41,21 +42,45 @@ class StressUpdate {
   void begin_step(const Scene<Dim>& scene);
   void end_step(Scene<Dim>& scene);
 
+  // Each of the following adds its stages to a sweep, or makes a sweep of its own.
+
   /// Strains over `dt` [s] from the velocities that the nodes have, then stresses.
-  void update(Scene<Dim>& scene, double dt, const AfterBlock& after_block = {});
+  void update(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt, const AfterBlock& after_block = {});
+  void update(Scene<Dim>& scene, double dt, const AfterBlock& after_block = {}) {
+    run_alone(scene, [&](Sweep<Dim>& sweep) { update(sweep, scene, dt, after_block); });
+  }
   /// Velocities and positions from the nodes.
-  void gather_motion(Scene<Dim>& scene, double dt) { gather_motion(scene, dt, scene.particles.position); }
+  void gather_motion(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt);
+  void gather_motion(Scene<Dim>& scene, double dt) {
+    run_alone(scene, [&](Sweep<Dim>& sweep) { gather_motion(sweep, scene, dt); });
+  }
   /// The same, and stresses from the strains of that motion (USL).
-  void gather_motion_and_update(Scene<Dim>& scene, double dt);
+  void gather_motion_and_update(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt);
+  void gather_motion_and_update(Scene<Dim>& scene, double dt) {
+    run_alone(scene, [&](Sweep<Dim>& sweep) { gather_motion_and_update(sweep, scene, dt); });
+  }
   /// The same, but the strains are those of the particles' new velocities, mapped to the nodes once more (MUSL).
-  void gather_motion_and_map_again(Scene<Dim>& scene, double dt);
+  void gather_motion_and_map_again(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt);
+  void gather_motion_and_map_again(Scene<Dim>& scene, double dt) {
+    run_alone(scene, [&](Sweep<Dim>& sweep) { gather_motion_and_map_again(sweep, scene, dt); });
+  }
 
   /// Working memory by thread, which other stages of the module may use.
   std::vector<Workspace<Dim>>& workspaces() { return workspaces_; }
 
  private:
-  void gather_motion(Scene<Dim>& scene, double dt, ColumnId positions);
-  void apply_f_bar(Scene<Dim>& scene, double dt, const AfterBlock& after_block);
+  template <class Add>
+  static void run_alone(const Scene<Dim>& scene, const Add& add) {
+    Sweep<Dim> sweep(scene.blocks);
+    add(sweep);
+    sweep.run();
+  }
+  void move(Scene<Dim>& scene, double dt, ColumnId positions, Items some);
+  void move_and_strain(Scene<Dim>& scene, double dt, Items some);
+  void strain(Scene<Dim>& scene, double dt, const AfterBlock& after_block, Items some);
+  void apply_f_bar(Scene<Dim>& scene, double dt, const AfterBlock& after_block, Items some);
+  void add_to_cells(Scene<Dim>& scene, std::size_t number, const ParticleBlock<Dim>& block, Workspace<Dim>& work);
+  void take_next_position(Scene<Dim>& scene, Items some);
   StressReport update_block(Scene<Dim>& scene, const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain,
                             double dt);
   StrainIncrements<Dim> kept_strain(Scene<Dim>& scene, std::uint32_t first);

@@ -59,36 +59,44 @@ void TotalStress<Dim>::step(Scene<Dim>& scene, double dt) {
 /// Update stress first: with the velocities that the particles brought along, over the interval just past.
 template <int Dim>
 void TotalStress<Dim>::step_usf(Scene<Dim>& scene, double dt) {
-  scatter(scene, ScatterWhat::momentum);
-  velocity_from_momentum(scene);
-  stress_.update(scene, scene.previous_dt, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>&) {
+  Sweep<Dim> sweep(scene.blocks);
+  sweep.over_particles([&](Items some) { scatter(scene, ScatterWhat::momentum, 0, some); });
+  sweep.over_nodes([&](Items some) { velocity_from_momentum(scene, some); });
+  stress_.update(sweep, scene, scene.previous_dt, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>&) {
     scene.shape->scatter(ScatterWhat::force, scene.scatter_input(block), 0, nullptr, scene.nodes.force_tile(b));
   });
-  advance_nodes(scene, scene.kick(dt), false, true);
-  stress_.gather_motion(scene, dt);
+  sweep.over_nodes([&](Items some) { advance_nodes(scene, scene.kick(dt), false, true, some); });
+  stress_.gather_motion(sweep, scene, dt);
+  sweep.run();
 }
 
 /// Update stress last: with the new velocities of the nodes.
 template <int Dim>
 void TotalStress<Dim>::step_usl(Scene<Dim>& scene, double dt) {
-  scatter_momentum_and_advance(scene, dt);
-  stress_.gather_motion_and_update(scene, dt);
+  Sweep<Dim> sweep(scene.blocks);
+  scatter_momentum_and_advance(sweep, scene, dt);
+  stress_.gather_motion_and_update(sweep, scene, dt);
+  sweep.run();
 }
 
 /// Modified update stress last: the new velocities of the particles are mapped to the nodes once more.
 template <int Dim>
 void TotalStress<Dim>::step_musl(Scene<Dim>& scene, double dt) {
-  scatter_momentum_and_advance(scene, dt);
-  stress_.gather_motion_and_map_again(scene, dt);
+  Sweep<Dim> sweep(scene.blocks);
+  scatter_momentum_and_advance(sweep, scene, dt);
+  stress_.gather_motion_and_map_again(sweep, scene, dt);
+  sweep.run();
 }
 
 /// With APIC nobody asks for the nodes' change of velocity: momentum and impulse can share a lane. Not with linear
 /// functions, where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::negligible_weight).
 template <int Dim>
-void TotalStress<Dim>::scatter_momentum_and_advance(Scene<Dim>& scene, double dt) {
+void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
   const bool together = scene.transfer.affine && scene.shape->degree() > 1;
-  scatter(scene, together ? ScatterWhat::momentum_and_impulse : ScatterWhat::momentum_and_force, scene.kick(dt));
-  advance_nodes(scene, scene.kick(dt), true, !together);
+  const auto what = together ? ScatterWhat::momentum_and_impulse : ScatterWhat::momentum_and_force;
+  const double kick = scene.kick(dt);
+  sweep.over_particles([&scene, what, kick](Items some) { scatter(scene, what, kick, some); });
+  sweep.over_nodes([&scene, together, kick](Items some) { advance_nodes(scene, kick, true, !together, some); });
 }
 
 // ---- reporting ----

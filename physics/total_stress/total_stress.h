@@ -34,7 +34,7 @@ class TotalStress final : public PhysicsModule<Dim> {
   void step_usf(Scene<Dim>& scene, double dt);
   void step_usl(Scene<Dim>& scene, double dt);
   void step_musl(Scene<Dim>& scene, double dt);
-  void scatter_momentum_and_advance(Scene<Dim>& scene, double dt);
+  void scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt);
 
   StressUpdate<Dim> stress_;
   InitialStress initial_stress_;

@@ -1,8 +1,10 @@
 /// Measures particle-steps per second on the dam, against the plain kernel of plain_kernel.h, in one run.
 ///
-///   sluice_performance [--smoke] [--sizes 1 0.25 0.125]
+///   sluice_performance [--smoke] [--sizes 1 0.25 0.125] [--only linear]
 ///   sluice_performance --solver      the sparse solvers instead (solver.h)
+///   sluice_performance --two-phase   steps with pore water instead (two_phase.h)
 ///
+/// `--only` leaves out the kernels whose names do not contain the word; the plain one stays.
 /// Every figure is a rate of bursts taken in turn (plain, linear, quadratic, …, plain, …), so that a machine whose
 /// speed drifts disturbs all alike; ratios are medians of the ratios within a turn. The state is that of the dam while
 /// it slides.
@@ -21,6 +23,7 @@
 #include "core/simulation/simulation.h"
 #include "plain_kernel.h"
 #include "solver.h"
+#include "two_phase.h"
 
 namespace {
 
@@ -135,7 +138,7 @@ void print_stages(const std::string& name, const Simulation& simulation) {
 }
 
 /// Returns the linear one-thread rate.
-double compare(double cell, int turns, double seconds, double in_cache_rate) {
+double compare(double cell, const std::string& kernels, int turns, double seconds, double in_cache_rate) {
   const Case linear_case = dam(cell, "linear", "flip", "usf");
   const Case quadratic_case = dam(cell, "quadratic_bspline", "apic", "usl");
   const double far = 1000;
@@ -155,6 +158,9 @@ double compare(double cell, int turns, double seconds, double in_cache_rate) {
       {"quadratic APIC USL", 1, [&] { quadratic->advance(far); }},
       {"quadratic APIC USL", 2, [&] { quadratic->advance(far); }},
   };
+  std::erase_if(all, [&](const Contestant& c) {
+    return c.name.find(kernels) == std::string::npos && !c.name.starts_with("plain");
+  });
   take_turns(all, particles, turns, seconds);
   fmt::print("{} particles (cells of {} m)\n", particles, cell);
   fmt::print("  {:<22}{:>8}{:>20}{:>16}{:>20}\n", "kernel", "threads", "10^6 p-steps/s", "times plain",
@@ -174,22 +180,28 @@ double compare(double cell, int turns, double seconds, double in_cache_rate) {
 
 int main(int argc, char** argv) {
   std::vector<double> cells;
-  bool smoke = false, solver = false;
+  std::string kernels;
+  bool smoke = false, solver = false, water = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--smoke")
       smoke = true;
     else if (word == "--solver")
       solver = true;
+    else if (word == "--two-phase")
+      water = true;
+    else if (word == "--only" && i + 1 < argc)
+      kernels = argv[++i];
     else if (word != "--sizes")
       cells.push_back(std::stod(word));
   }
   if (solver || smoke) measure_solvers(smoke);
-  if (solver) return 0;
+  if (water || smoke) measure_two_phase(smoke);
+  if (solver || water) return 0;
   if (cells.empty()) cells = smoke ? std::vector<double>{1} : std::vector<double>{1, 0.25, 0.125};
   double in_cache = 0;
   for (const double cell : cells) {
-    const double rate = compare(cell, smoke ? 1 : 7, smoke ? 0.05 : 0.5, in_cache);
+    const double rate = compare(cell, kernels, smoke ? 1 : 7, smoke ? 0.05 : 0.5, in_cache);
     if (in_cache == 0) in_cache = rate;
   }
   return 0;

@@ -127,7 +127,7 @@ void expect_round_trip() {
   blocks.sort(particles, g, 2);
   // Particles wander; the record is of what was.
   for (double& x : particles.columns.values(particles.position)) x += 0.3;
-  again.restore(blocks.record(), particles, 2);
+  again.restore(blocks.record(), particles, g, 2);
   EXPECT_EQ(again.record(), blocks.record());
   ASSERT_EQ(again.particle_blocks().size(), blocks.particle_blocks().size());
   ASSERT_EQ(again.batches().size(), blocks.batches().size());

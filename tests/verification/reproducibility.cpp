@@ -1,17 +1,19 @@
 /// The answer depends neither on the number of threads nor on being interrupted: bit for bit. Every comparison is
 /// exact.
 #include "core/parallel/parallel.h"
+#include "core/simulation/sweep.h"
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {
 namespace {
 
 /// A small dam of two soils on a rough floor, over several blocks, that yields and slides.
-std::unique_ptr<Simulation> dam(int dimension, const Scheme& scheme) {
+std::unique_ptr<Simulation> dam(int dimension, const Scheme& scheme, const std::string& cell = "0.5 m") {
   const bool flat = dimension == 2;
   SceneText scene{
-      .grid = flat ? "{min: [-10 m, 0 m], max: [14 m, 8 m], cell: 0.5 m}"
-                   : "{min: [-4 m, 0 m, 0 m], max: [6 m, 3 m, 4 m], cell: 0.5 m}",
+      .grid = (flat ? "{min: [-10 m, 0 m], max: [14 m, 8 m], cell: "
+                    : "{min: [-4 m, 0 m, 0 m], max: [6 m, 3 m, 4 m], cell: ") +
+              cell + "}",
       .material =
           "{model: mohr_coulomb, density: 1800 kg/m3, youngs_modulus: 1 MPa, poisson_ratio: 0.3, friction_angle: 20 "
           "deg, cohesion: 1 kPa}\n"
@@ -46,6 +48,12 @@ void expect_same_state(const Simulation& a, const Simulation& b) {
   }
 }
 
+Archive archive_of(const Simulation& simulation) {
+  Archive archive;
+  simulation.store(archive);
+  return archive;
+}
+
 class Reproducibility : public ::testing::TestWithParam<Scheme> {
  protected:
   void TearDown() override { set_thread_count(1); }
@@ -73,10 +81,18 @@ TEST_P(Reproducibility, ThreadsDoNotMatterWithFBar) {
   expect_thread_independence(2, GetParam().with("f_bar: true"), 40);
 }
 
-Archive archive_of(const Simulation& simulation) {
-  Archive archive;
-  simulation.store(archive);
-  return archive;
+// On one thread the stages take more than one turn over these blocks, on four they take one (Sweep::usual_pace).
+TEST_P(Reproducibility, TurnsOfTheSweepDoNotMatter) {
+  for (const auto& scheme : {GetParam(), GetParam().with("f_bar: true")}) {
+    const auto reference = dam(2, scheme, "0.0625 m");
+    take_steps(*reference, 8);
+    ASSERT_GT(archive_of(*reference).integers.at("blocks").size() / 3, Sweep<2>::usual_pace);
+    set_thread_count(4);
+    const auto other = dam(2, scheme, "0.0625 m");
+    take_steps(*other, 8);
+    expect_same_state(*reference, *other);
+    set_thread_count(1);
+  }
 }
 
 // The archive is taken when particles have wandered since they were sorted, so that the blocks are history; the

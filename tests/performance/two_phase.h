@@ -1,0 +1,6 @@
+/// Benchmark of physics/two_phase: `sluice_performance --two-phase`.
+#pragma once
+
+/// Prints what a step with pore water costs beside one without, where its time goes, how that scales, and how the
+/// projection compares with the explicit step to the same end. `smoke`: the smallest sizes only, a few steps.
+void measure_two_phase(bool smoke);
