@@ -1,7 +1,7 @@
 /// ExternalPressure: pressures on the surface of the material, from surface loads and ponded water.
 ///
 /// The surface is never looked for. With any continuous field P(x, t) that has the wanted values on the surface, the
-/// divergence theorem turns the traction -P n into volume terms (docs/theory.md, section 9):
+/// divergence theorem turns the traction -P n into volume terms (docs/theory.md, eqs. (33) and (34)):
 ///
 ///   -int_surface N P n dA = -int_volume P grad N dV - int_volume N grad P dV
 ///

@@ -49,7 +49,7 @@ class PoreWater {
   void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile, double increment,
                       const ExternalPressure<Dim>& outside);
 
-  /// Particles of a block to its cells and vertices: eqs. (43)-(47). The nodes have the velocities of the predictor.
+  /// Particles of a block to its cells and vertices: eq. (45). The nodes have the velocities of the predictor.
   /// `relative` holds the velocities of the water relative to the solid, or nulls where it has no inertia of its own.
   /// Returns the power that the flow through the pores dissipates [W].
   double collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work, double kick,

@@ -272,8 +272,8 @@ double PressureEquation<Dim>::face_flux(const typename Grid::Vertex& vertex, dou
   return flux;
 }
 
-/// Eq. (46). A line that leaves the water is continued to the vertex outside by the straight line through the surface
-/// (Gibou et al. 2002): it changes the diagonal only, so the matrix stays symmetric.
+/// Eqs. (46) and (48). A line that leaves the water is continued to the vertex outside by the straight line through the
+/// surface (Gibou et al. 2002): it changes the diagonal only, so the matrix stays symmetric.
 template <int Dim>
 void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside,
                                       double time) {

@@ -1,5 +1,5 @@
 /// PressureEquation: the balance of volume of soil and water at the vertices of cells, solved for the pressure at the
-/// end of the step. docs/theory.md, section 9, eqs. (40)-(49).
+/// end of the step. docs/theory.md, section 9, eqs. (40)-(48).
 ///
 /// A step uses it so:
 ///   prepare(scene)                                  which cells and vertices take part

@@ -138,7 +138,7 @@ void TwoPhase<Dim>::project(Scene<Dim>& scene, double dt, double kick) {
   pressure_.solve(scene, outside_, {dt, kick, scene.time + dt, water_.increment, water_.stabilisation});
 }
 
-/// The nodes take up the new pressure, eq. (48).
+/// The nodes take up the new pressure, eq. (49).
 template <int Dim>
 void TwoPhase<Dim>::correct(Scene<Dim>& scene, double kick) {
   const bool friction = scene.faces.any_friction();
