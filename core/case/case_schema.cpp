@@ -72,7 +72,7 @@ void read_box(Region& region, const Node& node, Problems& problems) {
 void read_polygon(Region& region, const Node& node, Problems& problems) {
   if (node.kind != Node::Kind::list || node.items.size() < 3) {
     problems.add(node.place,
-                 fmt::format("polygon: found {}; expected three or more points [[x, z], …], or FILE.yaml#NAME",
+                 fmt::format("polygon: found {}; expected three or more points [[x, y], …], or FILE.yaml#NAME",
                              description(node)));
     return;
   }
@@ -153,7 +153,7 @@ Schema<T>& with_shapes(Schema<T>& schema, const Mutable& mutable_region, const C
   add({.name = "polygon",
        .type = field_type::points,
        .unit = "m",
-       .range = "three points [x, z] or more",
+       .range = "three points [x, y] or more; [x, z] in 3-D",
        .default_text = "none",
        .sentence = "Closed polygon in the plane of the first and last axis, in 3-D a prism along the middle axis; or "
                    "`FILE.yaml#NAME`, a polygon in a file beside this one.",

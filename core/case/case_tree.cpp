@@ -150,7 +150,7 @@ class PolygonFiles {
   Node find(const Node& reference) {
     const auto hash = reference.scalar.find('#');
     if (hash == std::string::npos || hash == 0 || hash + 1 == reference.scalar.size())
-      throw CaseError(reference.place, fmt::format("polygon: found '{}'; expected points [[x, z], …] or FILE.yaml#NAME",
+      throw CaseError(reference.place, fmt::format("polygon: found '{}'; expected points [[x, y], …] or FILE.yaml#NAME",
                                                    reference.scalar));
     const std::string name = reference.scalar.substr(hash + 1);
     const Node& file = read(reference, reference.scalar.substr(0, hash));

@@ -11,9 +11,8 @@ namespace sluice {
 
 namespace {
 
-std::string axis_name(std::size_t axis, std::size_t dimension) {
-  return axis + 1 == dimension ? "z" : axis == 0 ? "x" : "y";
-}
+/// As in the components of stress: in plane strain y points up, and z out of the plane.
+std::string axis_name(std::size_t axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
 
 class Consistency {
  public:
@@ -72,7 +71,7 @@ class Consistency {
   bool check_axis(std::size_t a, const Node& section) {
     const GridCase& grid = case_.grid;
     const double extent = grid.max[a] - grid.min[a], cell = grid.cell[a], cells = extent / cell;
-    const std::string axis = axis_name(a, grid.min.size());
+    const std::string axis = axis_name(a);
     const Place place = place_of(section, "max");
     constexpr double most = 1e6;
     if (extent <= 0) {
@@ -178,7 +177,7 @@ class Consistency {
     const auto bounds = body.region.bounds(static_cast<int>(dimension_));
     const auto faces = face_words(static_cast<int>(dimension_));
     for (std::size_t a = 0; a < dimension_; ++a) {
-      const std::string axis = axis_name(a, dimension_);
+      const std::string axis = axis_name(a);
       const double low = case_.grid.min[a], high = case_.grid.max[a], tolerance = 1e-9 * (high - low);
       const double from = bounds[0][a], to = bounds[1][a];
       const auto complain = [&](double beyond, const std::string& face, double at, double end) {

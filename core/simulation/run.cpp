@@ -106,7 +106,7 @@ class Run {
     try {
       while (simulation_->time() < case_.end_time) {
         const double until = std::min(case_.end_time, frames.next());
-        const StepInfo info = simulation_->advance(until);
+        const StepInfo info = advance(until);
         particle_steps_ += simulation_->particles().size();
         const bool at_end = simulation_->time() >= case_.end_time;
         if (case_.output.history_every <= 0 || rows.due(simulation_->time()) || at_end) write_row(info);
@@ -220,6 +220,33 @@ class Run {
     for (const auto& observation : observations_)
       observed.emplace_back(observation->evaluate(simulation_->particles()));
     observed_->append(observed);
+  }
+
+  StepInfo advance(double until) {
+    try {
+      return simulation_->advance(until);
+    } catch (const std::runtime_error&) {
+      keep_last_good_state();
+      throw;
+    }
+  }
+
+  /// A step that fails leaves particles half moved. The steps since the latest checkpoint, which come out the same bit
+  /// for bit, are repeated up to the one before it, and that state is kept.
+  void keep_last_good_state() {
+    try {
+      const std::int64_t good = simulation_->steps();
+      simulation_->restore(checkpoints_.load_latest().archive);
+      Schedule frames(case_.output.every, simulation_->time());
+      while (simulation_->steps() < good && !interrupted()) {
+        simulation_->advance(std::min(case_.end_time, frames.next()));
+        frames.pass(simulation_->time());
+      }
+      checkpoint();
+      write_frame();
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "warning: the last good state could not be kept: {}\n", error.what());
+    }
   }
 
   void write_frame() {

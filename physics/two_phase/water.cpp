@@ -69,7 +69,7 @@ void read_table(WaterCase& water, const Node& node, Problems& problems) {
     water.table.push_back({(*x)[0], (*x)[1]});
   }
   if (node.kind != Node::Kind::list || water.table.empty())
-    problems.add(node.place, fmt::format("water.table: found {}; expected points [[x, z], …]", description(node)));
+    problems.add(node.place, fmt::format("water.table: found {}; expected points [[x, y], …]", description(node)));
 }
 
 Node write_table(const WaterCase& water) {
@@ -151,7 +151,7 @@ const Schema<WaterCase>& schema() {
           .custom({.name = "table",
                    .type = field_type::points,
                    .unit = "m",
-                   .range = "points [x, z] with ascending x",
+                   .range = "points [x, y] with ascending x; [x, z] in 3-D",
                    .default_text = "everything is saturated",
                    .sentence = "The water table: material that lies above it at the start holds no water."},
                   read_table, write_table)

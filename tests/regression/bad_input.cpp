@@ -1,7 +1,10 @@
 /// Bad input: a clear message on stderr, the documented exit code, and nothing lost.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
 
 #include "core/simulation/run.h"
 #include "tests/regression/program.h"
@@ -34,6 +37,12 @@ void expect_refused(const std::string& text, const std::vector<std::string>& wor
     for (const auto& word : words) EXPECT_TRUE(holds(ending.err, word));
     EXPECT_EQ(changes(before, fingerprint(scratch.path())), "");
   }
+}
+
+/// The number that follows `words`; -1 if they are not there.
+double number_after(const std::string& text, const std::string& words) {
+  const auto place = text.find(words);
+  return place == std::string::npos ? -1 : std::strtod(text.c_str() + place + words.size(), nullptr);
 }
 
 }  // namespace
@@ -254,10 +263,33 @@ TEST(FailedRun, names_the_particle_that_left_the_grid) {
   EXPECT_TRUE(holds(text_of(scratch / "out/summary.json"), R"("exit_reason": "run_failed")"));
   EXPECT_FALSE(datasets(scratch / "out/results.h5").empty());
 
-  // What the message proposes, from the last checkpoint on.
-  EXPECT_EQ(run_sluice({"run", "case.yaml", "-o", "out", "--resume", "--set", "outflow=remove"}, scratch.path()).code,
-            exit_code::done);
+  // What the message proposes, from the state before the step that failed on: nothing that was computed is lost.
+  const double failed = number_after(ending.err, "m/s, in step ");
+  ASSERT_GT(failed, 1);
+  const Ending resumed =
+      run_sluice({"run", "case.yaml", "-o", "out", "--resume", "--set", "outflow=remove"}, scratch.path());
+  EXPECT_EQ(resumed.code, exit_code::done);
+  EXPECT_EQ(number_after(resumed.out, ", step "), failed - 1);
   EXPECT_EQ(names_in(scratch / "out"), promised_names());
+}
+
+/// Bit for bit the same, whether the latest checkpoint is of the step before or of the start.
+TEST(FailedRun, keeps_the_state_before_the_step_that_failed) {
+  const Scratch scratch;
+  const std::string opened = with(column, "right: roller", "right: free");
+  scratch.write("case.yaml", with(opened, "- material: sand", "- material: sand\n    velocity: [20 m/s, 0]"));
+  std::vector<std::map<std::string, std::string>> kept;
+  for (const std::string every : {"1e-9 s", "1 h"}) {
+    SCOPED_TRACE(every);
+    const Ending ending = run_sluice(
+        {"run", "case.yaml", "-o", "out", "--force", "--set", "output.checkpoint_every=" + every}, scratch.path());
+    ASSERT_EQ(ending.code, exit_code::run_failed) << ending.err;
+    kept.push_back(datasets(scratch / "out/results.h5"));
+    const auto summary = nlohmann::json::parse(text_of(scratch / "out/summary.json"));
+    EXPECT_EQ(summary.at("time").get<double>(), last_number(scratch / "out/history.csv", "time_s"));
+    EXPECT_EQ(summary.at("steps").get<double>(), number_after(ending.err, "m/s, in step ") - 1);
+  }
+  EXPECT_EQ(kept[0], kept[1]);
 }
 
 /// A pull of 1e8 g: the first step, before which nothing moves, is computed from the wave speed alone and far too long.

@@ -185,14 +185,14 @@ TEST(CaseFile, WrongGrids) {
             "cells, "
             "for example 10 m or 11 m");
   EXPECT_EQ(message_with("max: [10 m, 5 m]", "max: [10 m, -5 m]"),
-            "c.yaml:3:30: grid: max is -5 m along z; it must be above min, 0 m");
+            "c.yaml:3:30: grid: max is -5 m along y; it must be above min, 0 m");
   EXPECT_EQ(message_with("max: [10 m, 5 m]", "max: [10 m, 5 m, 1 m]"),
             "c.yaml:3:30: grid: min has 2 components, max has 3");
   EXPECT_EQ(message_with("cell: 1 m", "cell: [1 m, 1 m, 1 m]"), "c.yaml:3:49: grid: cell has 3 components, min has 2");
   EXPECT_EQ(message_with("cell: 1 m", "cell: 0 m"), "c.yaml:3:49: cell is 0 m; it must be above 0");
   EXPECT_EQ(message_with("cell: 1 m", "cell: 1 um"),
             "c.yaml:3:49: grid: 1e+07 cells along x; at most 1e+06 are possible\n"
-            "c.yaml:3:49: grid: 5e+06 cells along z; at most 1e+06 are possible");
+            "c.yaml:3:49: grid: 5e+06 cells along y; at most 1e+06 are possible");
   // Cells whose size is no binary fraction are whole numbers, too.
   EXPECT_EQ(message_with("cell: 1 m", "cell: 0.1 m"), "");
 }
@@ -210,18 +210,18 @@ TEST(CaseFile, WrongBodies) {
             "the grid ends "
             "at 0 m");
   EXPECT_EQ(message_with("max: [4 m, 3 m]", "max: [4 m, 6 m]"),
-            "c.yaml:6:5: the body of 'soil' reaches 1 m beyond the top face of the grid: it extends to z = 6 m, the "
+            "c.yaml:6:5: the body of 'soil' reaches 1 m beyond the top face of the grid: it extends to y = 6 m, the "
             "grid ends at "
             "5 m");
   EXPECT_EQ(message_with("max: [4 m, 3 m]}", "max: [4 m, 3 m]}, half_space: {point: [1 m, 0], normal: [1, 0]}"),
             "c.yaml:6:5: the body of 'soil' is empty: its shapes have nothing in common along x");
   EXPECT_EQ(message_with("box: {min: [1 m, 0 m], max: [4 m, 3 m]}", "half_space: {point: [0, -1 m], normal: [0, 1]}"),
-            "c.yaml:6:5: the body of 'soil' lies outside the grid: it extends from z = -inf m to -1 m, the grid from 0 "
+            "c.yaml:6:5: the body of 'soil' lies outside the grid: it extends from y = -inf m to -1 m, the grid from 0 "
             "m to 5 m");
   EXPECT_EQ(message_with("max: [4 m, 3 m]", "max: [0 m, 3 m]"),
             "c.yaml:6:27: box: component 1 of max is 0 m; it must be above that of min, 1 m");
   EXPECT_EQ(message_with("box: {min: [1 m, 0 m], max: [4 m, 3 m]}", "polygon: [[0, 0], [1, 1]]"),
-            "c.yaml:6:31: polygon: found a list of 2; expected three or more points [[x, z], …], or FILE.yaml#NAME");
+            "c.yaml:6:31: polygon: found a list of 2; expected three or more points [[x, y], …], or FILE.yaml#NAME");
   EXPECT_EQ(message_with("box: {min: [1 m, 0 m], max: [4 m, 3 m]}", "polygon: [[0, 0], [1, 1], [2, 2]]"),
             "c.yaml:6:31: polygon: its area is 0");
   EXPECT_EQ(message_with("max: [4 m, 3 m]}", "max: [4 m, 3 m]}, replaces: water"),
@@ -332,7 +332,7 @@ TEST_F(CaseFiles, PolygonsOfOtherFiles) {
             place + "polygon: 'section.yaml' has no 'cor'; allowed: core, shell, bad; did you mean 'core'?");
   EXPECT_EQ(message_of_file(with("none.yaml#core")), place + "polygon: there is no file '" + path("none.yaml") + "'");
   EXPECT_EQ(message_of_file(with("core")),
-            place + "polygon: found 'core'; expected points [[x, z], …] or FILE.yaml#NAME");
+            place + "polygon: found 'core'; expected points [[x, y], …] or FILE.yaml#NAME");
   EXPECT_EQ(message_of_file(with("section.yaml#bad")),
             path("section.yaml") +
                 ":3:25: point of the polygon, component 2: found '0 s', a time; expected a length, for example 0.5 m");

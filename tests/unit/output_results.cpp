@@ -3,7 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <limits>
 #include <numeric>
+#include <thread>
 
 #include "core/output/hdf5_file.h"
 #include "core/output/results.h"
@@ -206,26 +209,32 @@ TEST(Results, EarlierTimeIsRefused) {
   EXPECT_THROW(writer.add_frame(particles, 0.5, 2), std::invalid_argument);
 }
 
-/// A child writes, finishes and resumes without end; it is killed at random moments.
+/// Writes, finishes and resumes, four frames more in each round.
+void write_rounds(const std::filesystem::path& folder, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
+    auto particles = row_of_particles(500);
+    ResultsWriter writer = round == 0 ? ResultsWriter(folder, test::provenance(), particles)
+                                      : ResultsWriter(folder, test::provenance(), particles, 4.0 * round - 1.5);
+    write_frames(writer, particles, 4 * round, 4 * round + 3);
+    writer.finish();
+  }
+}
+
+/// A child that writes without end is killed at random moments, in its first rounds and the finishing between them. How
+/// long a round takes on this machine, and with sanitizers, is measured.
 TEST(Results, KilledRunLeavesReadableResults) {
   std::srand(1);
+  const auto start = std::chrono::steady_clock::now();
+  write_rounds(ScratchFolder().path(), 2);
+  const std::chrono::duration<double> longest = std::chrono::steady_clock::now() - start;
   std::size_t most_frames = 0;
   for (int attempt = 0; attempt < 20; ++attempt) {
     const ScratchFolder folder;
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
-    if (child == 0) {
-      for (int round = 0;; ++round) {
-        auto particles = row_of_particles(500);
-        ResultsWriter writer = round == 0
-                                   ? ResultsWriter(folder.path(), test::provenance(), particles)
-                                   : ResultsWriter(folder.path(), test::provenance(), particles, 4.0 * round - 1.5);
-        write_frames(writer, particles, 4 * round, 4 * round + 3);
-        writer.finish();
-      }
-    }
+    if (child == 0) write_rounds(folder.path(), std::numeric_limits<int>::max());
     while (!std::filesystem::exists(folder / "results.h5")) ::usleep(100);
-    ::usleep(static_cast<useconds_t>(std::rand() % 150000));
+    std::this_thread::sleep_for(2 * longest * std::rand() / RAND_MAX);
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
     const std::size_t frames = verify_frames(folder / "results.h5");
