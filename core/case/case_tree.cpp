@@ -204,6 +204,9 @@ void resolve_polygons(Node& tree, const std::string& case_file, Problems& proble
     for (Node& observation : observe->items) files.resolve(observation.find("region"));
   if (Node* const loads = tree.find("surface_loads"))
     for (Node& load : loads->items) files.resolve(load.find("region"));
+  Node* const water = tree.find("water");
+  if (Node* const ponds = water != nullptr ? water->find("ponds") : nullptr)
+    for (Node& pond : ponds->items) files.resolve(pond.find("region"));
 }
 
 }  // namespace sluice

@@ -14,6 +14,11 @@ namespace {
 /// As in the components of stress: in plane strain y points up, and z out of the plane.
 std::string axis_name(std::size_t axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
 
+Place place_of(const Node& section, const std::string& key) {
+  const Node* const found = section.find(key);
+  return found != nullptr ? found->place : section.place;
+}
+
 class Consistency {
  public:
   Consistency(Case& definition, Problems& problems) : case_(definition), problems_(problems) {}
@@ -32,11 +37,6 @@ class Consistency {
   }
 
  private:
-  static Place place_of(const Node& section, const std::string& key) {
-    const Node* const found = section.find(key);
-    return found != nullptr ? found->place : section.place;
-  }
-
   /// An empty list becomes zero.
   void check_components(std::vector<double>& values, const std::string& key, const Node& section) {
     if (values.empty()) values.assign(dimension_, 0.0);
@@ -156,20 +156,7 @@ class Consistency {
   }
 
   bool check_shapes(const Region& region, const Node& section, const std::string& what) {
-    const bool named = section.find("box") || section.find("polygon") || section.find("half_space");
-    if (!named && section.kind == Node::Kind::map)
-      problems_.add(section.place, what + ": it has no shape; give one or more of box, polygon, half_space");
-    for (const Primitive& part : region.parts) {
-      std::size_t found = dimension_;
-      std::string shape;
-      if (const auto* const box = std::get_if<Box>(&part)) found = box->min.size(), shape = "box";
-      if (const auto* const half = std::get_if<HalfSpace>(&part)) found = half->point.size(), shape = "half_space";
-      if (found == dimension_) continue;
-      problems_.add(place_of(section, shape),
-                    fmt::format("{}: found {} components; the grid has {} dimensions", shape, found, dimension_));
-      return false;
-    }
-    return !region.parts.empty();
+    return check_region(region, section, what, dimension_, problems_);
   }
 
   /// Where the region is bounded, it must end inside the grid; where it is not, the grid ends it.
@@ -230,6 +217,24 @@ class Consistency {
 };
 
 }  // namespace
+
+bool check_region(const Region& region, const Node& section, const std::string& what, std::size_t dimension,
+                  Problems& problems) {
+  const bool named = section.find("box") || section.find("polygon") || section.find("half_space");
+  if (!named && section.kind == Node::Kind::map)
+    problems.add(section.place, what + ": it has no shape; give one or more of box, polygon, half_space");
+  for (const Primitive& part : region.parts) {
+    std::size_t found = dimension;
+    std::string shape;
+    if (const auto* const box = std::get_if<Box>(&part)) found = box->min.size(), shape = "box";
+    if (const auto* const half = std::get_if<HalfSpace>(&part)) found = half->point.size(), shape = "half_space";
+    if (found == dimension) continue;
+    problems.add(place_of(section, shape),
+                 fmt::format("{}: found {} components; the grid has {} dimensions", shape, found, dimension));
+    return false;
+  }
+  return !region.parts.empty();
+}
 
 void complete_and_check(Case& definition, Problems& problems) { Consistency(definition, problems).run(); }
 

@@ -11,4 +11,9 @@ namespace sluice {
 /// read are passed over, as they are reported already.
 void complete_and_check(Case& definition, Problems& problems);
 
+/// Whether a region has a shape, and all its shapes the dimension of the grid; `section` is what it was read from and
+/// `what` its name in messages.
+bool check_region(const Region& region, const Node& section, const std::string& what, std::size_t dimension,
+                  Problems& problems);
+
 }  // namespace sluice

@@ -47,7 +47,7 @@ const Schema<Pond>& pond_schema() {
   return schema;
 }
 
-std::vector<SurfaceLoad> read_surface_loads(const Node& section) {
+std::vector<SurfaceLoad> read_surface_loads(const Node& section, int dimension) {
   std::vector<SurfaceLoad> loads;
   if (!section) return loads;
   if (section.kind != Node::Kind::list)
@@ -55,6 +55,7 @@ std::vector<SurfaceLoad> read_surface_loads(const Node& section) {
                                        "; expected a list of sections, each beginning with a dash");
   Problems problems;
   for (const Node& item : section.items) loads.push_back(surface_load_schema().read(item, {}, problems));
+  check_regions(loads, section, dimension, problems);
   problems.throw_if_any();
   return loads;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/case/case.h"
+#include "core/case/consistency.h"
 #include "core/case/geometry.h"
 #include "core/case/schema.h"
 #include "core/grid/geometry.h"
@@ -33,10 +34,18 @@ struct Pond {
 };
 
 /// The section `surface_loads` of a case. Throws CaseError.
-std::vector<SurfaceLoad> read_surface_loads(const Node& section);
+std::vector<SurfaceLoad> read_surface_loads(const Node& section, int dimension);
 Node resolved_surface_loads(const std::vector<SurfaceLoad>& loads);
 const Schema<SurfaceLoad>& surface_load_schema();
 const Schema<Pond>& pond_schema();
+/// Checks the regions of a list of loads or ponds against the dimension of the grid.
+template <class T>
+void check_regions(const std::vector<T>& items, const Node& section, int dimension, Problems& problems) {
+  for (std::size_t i = 0; i < items.size(); ++i)
+    if (items[i].region)
+      check_region(*items[i].region, *section.items[i].find("region"), "region", static_cast<std::size_t>(dimension),
+                   problems);
+}
 
 template <int Dim>
 class ExternalPressure {

@@ -1,13 +1,41 @@
 #include "physics/total_stress/total_stress.h"
 
+#include <fmt/format.h>
+
+#include "core/case/problems.h"
 #include "core/simulation/energy.h"
 #include "core/simulation/time_step.h"
 
 namespace sluice {
 
+namespace {
+
+const char* const refusal = "total_stress has neither water nor loads on surfaces; take `physics: two_phase`";
+
+/// The case, if nothing in it asks for water. Throws CaseError.
+const Case& without_water(const Case& definition) {
+  Problems problems;
+  for (const char* const key : {"water", "surface_loads"})
+    if (const Node* const section = definition.source.find(key))
+      problems.add(section->place, fmt::format("{}: the physics {}", key, refusal));
+  for (const auto& [name, section] : definition.materials)
+    if (const Node* const pores = section.find("water"))
+      problems.add(pores->place, fmt::format("material '{}': water: the physics {}", name, refusal));
+  problems.throw_if_any();
+  return definition;
+}
+
+}  // namespace
+
 template <int Dim>
 TotalStress<Dim>::TotalStress(const Case& definition)
-    : stress_(definition), initial_stress_(read_initial_stress(definition.initial_stress)) {}
+    : stress_(without_water(definition)), initial_stress_(read_initial_stress(definition.initial_stress)) {
+  for (std::size_t m = 0; m < definition.materials.size(); ++m) {
+    const auto& [name, section] = definition.materials[m];
+    if (stress_.materials()[m].liquid())
+      throw CaseError(section.find("model")->place, fmt::format("material '{}': the physics {}", name, refusal));
+  }
+}
 
 template <int Dim>
 void TotalStress<Dim>::declare(Particles& particles) {

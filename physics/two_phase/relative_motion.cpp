@@ -1,5 +1,7 @@
 #include "physics/two_phase/relative_motion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/case/case_schema.h"
@@ -46,10 +48,14 @@ RelativeMotion<Dim>::RelativeMotion(const Case& definition, const WaterCase& wat
       pores_(pores),
       active_(water.formulation != Formulation::u_p),
       projected_(water.formulation == Formulation::v_w_p) {
-  for (const PoreSpace& space : pores.spaces())
-    if (active_ && !space.permeability.empty() &&
-        std::ranges::adjacent_find(space.permeability, std::not_equal_to()) != space.permeability.end())
-      throw CaseError("water: only `formulation: u-p` takes permeabilities that differ between axes");
+  for (std::size_t m = 0; active_ && m < pores.spaces().size(); ++m) {
+    const auto& k = pores.spaces()[m].permeability;
+    if (std::ranges::adjacent_find(k, std::not_equal_to()) == k.end()) continue;
+    const auto& [name, section] = definition.materials[m];
+    throw CaseError(
+        section.find("water")->find("permeability")->place,
+        fmt::format("material '{}': only `formulation: u-p` takes permeabilities that differ between axes", name));
+  }
   if (active_)
     faces_ = std::make_unique<Faces<Dim>>(closed_faces(definition, water), grid_of<Dim>(definition.grid),
                                           shape_registry<Dim>().find(definition.scheme.shape, {})()->degree());

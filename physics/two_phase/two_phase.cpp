@@ -1,5 +1,7 @@
 #include "physics/two_phase/two_phase.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -23,13 +25,35 @@ template <int Dim>
 TwoPhase<Dim>::TwoPhase(const Case& definition)
     : water_(read_water(definition)),
       initial_stress_(read_initial_stress(definition.initial_stress)),
-      loads_(read_surface_loads(definition.surface_loads)),
+      loads_(read_surface_loads(definition.surface_loads, Dim)),
       stress_(without_pores(definition)),
       pores_(water_, read_pore_spaces(definition, liquids(stress_.materials())), stress_.materials()),
       relative_(definition, water_, pores_),
       outside_(loads_, water_.ponds, -water_.density * definition.gravity.back(), grid_of<Dim>(definition.grid)),
       pressure_(water_, grid_of<Dim>(definition.grid), definition.gravity.back()) {
   for (int a = 0; a < Dim; ++a) gravity_[a] = definition.gravity[static_cast<std::size_t>(a)];
+  check_changes(definition);
+}
+
+/// Points that change keep their grains and their water: porosity follows from the density of the grains.
+template <int Dim>
+void TwoPhase<Dim>::check_changes(const Case& definition) const {
+  const auto number = [&](const std::string& name) {
+    return static_cast<std::size_t>(
+        std::ranges::find(
+            definition.materials, name, [](const auto& m) -> const auto& { return m.first; }) -
+        definition.materials.begin());
+  };
+  for (const ChangeCase& change : definition.changes) {
+    const std::size_t from = number(change.material), to = number(change.becomes);
+    const PoreSpace &a = pores_.spaces()[from], &b = pores_.spaces()[to];
+    if (a.liquid == b.liquid && a.saturated == b.saturated && a.porosity == b.porosity &&
+        stress_.materials()[from].density() == stress_.materials()[to].density())
+      continue;
+    throw CaseError(change.place, fmt::format("changes: '{}' and '{}' must have the same density and porosity, or both "
+                                              "be dry: the points keep their grains and their water",
+                                              change.material, change.becomes));
+  }
 }
 
 template <int Dim>

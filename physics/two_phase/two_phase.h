@@ -38,6 +38,7 @@ class TwoPhase final : public PhysicsModule<Dim> {
 
  private:
   void start_seepage(Scene<Dim>& scene);
+  void check_changes(const Case& definition) const;
   void step_projected(Scene<Dim>& scene, double dt);
   void step_explicit(Scene<Dim>& scene, double dt);
   void predict(Scene<Dim>& scene, double kick);

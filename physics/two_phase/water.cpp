@@ -203,12 +203,13 @@ const Schema<PoreSpace>& pore_schema() {
   return declared;
 }
 
-void check_faces(const WaterCase& water, const Node& section, int dimension) {
+void check_faces(const Node& section, int dimension, Problems& problems) {
   const auto allowed = face_words(dimension);
-  for (const auto& [name, face] : water.faces)
+  const Node* const faces = section.find("faces");
+  if (faces == nullptr || faces->kind != Node::Kind::map) return;
+  for (const auto& [name, place] : faces->keys)
     if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
-      throw CaseError(section.find("faces")->place,
-                      fmt::format("unknown face '{}' in water.faces; {}", name, allowed_words(name, allowed)));
+      problems.add(place, fmt::format("unknown face '{}' in water.faces; {}", name, allowed_words(name, allowed)));
 }
 
 }  // namespace
@@ -228,8 +229,13 @@ double WaterCase::table_level(double x) const {
 }
 
 WaterCase read_water(const Case& definition) {
-  WaterCase water = schema().read(definition.water);
-  check_faces(water, definition.water, definition.dimension());
+  Problems problems;
+  WaterCase water = schema().read(definition.water, {}, problems);
+  check_faces(definition.water, definition.dimension(), problems);
+  problems.throw_if_any();
+  if (!water.ponds.empty())
+    check_regions(water.ponds, *definition.water.find("ponds"), definition.dimension(), problems);
+  problems.throw_if_any();
   const auto fail = [&](const std::string& key, const std::string& message) {
     const Node* const node = definition.water.find(key);
     throw CaseError(node != nullptr ? node->place : definition.source.place, message);

@@ -92,6 +92,53 @@ TEST(BadCase, has_a_unit_of_another_dimension) {
 
 TEST(BadCase, has_an_unknown_unit) { expect_refused(with(column, "2 MPa", "2 psi"), {"case.yaml:10:21", "psi"}); }
 
+TEST(BadCase, has_water_that_its_physics_does_not_know) {
+  expect_refused(with(column, "end_time: 1 s", "end_time: 1 s\nwater: {density: 1 t/m3}"),
+                 {"case.yaml:21:8", "water: the physics total_stress has neither water", "`physics: two_phase`"});
+}
+
+TEST(BadCase, has_an_unknown_face_of_the_water) {
+  expect_refused(with(with(column, "total_stress", "two_phase"), "end_time: 1 s",
+                      "end_time: 1 s\nwater: {faces: {upper: drained}}"),
+                 {"case.yaml:21:17", "unknown face 'upper' in water.faces"});
+}
+
+// Found when the system of the pressure is solved: by `check`, which tries some steps, and in the first step of a run.
+TEST(BadCase, closes_in_water_that_cannot_be_compressed) {
+  const Scratch scratch;
+  scratch.write("case.yaml",
+                "schema: 1\nphysics: two_phase\nend_time: 1 s\ngravity: [0, -9.81 m/s2]\n"
+                "grid: {min: [0 m, 0 m], max: [2 m, 2 m], cell: 0.5 m}\n"
+                "materials: {soil: {model: linear_elastic, density: 1600 kg/m3, youngs_modulus: 1 MPa,\n"
+                "                   water: {porosity: 0.4, permeability: 1e-4 m/s}}}\n"
+                "bodies: [{material: soil, box: {min: [0 m, 0 m], max: [2 m, 2 m]}}]\n"
+                "boundaries: {left: roller, right: roller, bottom: roller, top: roller}\n");
+  for (const char* const command : {"check", "run"}) {
+    const Ending ending = run_sluice({command, "case.yaml"}, scratch.path());
+    EXPECT_EQ(ending.code, exit_code::bad_input);
+    EXPECT_TRUE(holds(ending.err, "incompressible and closed in"));
+  }
+}
+
+// A limit of the water: with an explicit step that of sound, with water on its own that of gravity.
+TEST(CheckedCase, shows_the_limits_of_the_water) {
+  const Scratch scratch;
+  scratch.write("case.yaml",
+                "schema: 1\nphysics: two_phase\nend_time: 1 s\ngravity: [0, -9.81 m/s2]\n"
+                "grid: {min: [0 m, 0 m], max: [2 m, 2 m], cell: 0.5 m}\n"
+                "materials: {soil: {model: linear_elastic, density: 1600 kg/m3, youngs_modulus: 1 MPa,\n"
+                "                   water: {porosity: 0.4, permeability: 1e-4 m/s}}, sea: {model: water}}\n"
+                "bodies: [{material: soil, box: {min: [0 m, 0 m], max: [1 m, 1 m]}},\n"
+                "         {material: sea, box: {min: [1 m, 0 m], max: [2 m, 1 m]}}]\n"
+                "boundaries: {left: roller, right: roller, bottom: roller}\nwater: {bulk_modulus: 2.2 GPa}\n");
+  Ending ending = run_sluice({"check", "case.yaml"}, scratch.path());
+  EXPECT_EQ(ending.code, 0);
+  for (const char* const limit : {"(wave)", "(gravity)"}) EXPECT_TRUE(holds(ending.out, limit));
+  ending = run_sluice({"check", "case.yaml", "--set", "water.formulation=explicit"}, scratch.path());
+  EXPECT_EQ(ending.code, 0);
+  EXPECT_TRUE(holds(ending.out, "sound"));
+}
+
 TEST(BadCase, is_told_all_mistakes_at_once) {
   expect_refused(with(with(column, "end_time: 1 s", "end_time: -1 s"), "friction: 0.5", "friction: -0.5"),
                  {"case.yaml:19:37", "case.yaml:20:11"});
