@@ -76,9 +76,11 @@ struct SceneText {
   Scheme scheme = {};
   std::string outflow = "error";
   double end_time = 1e6;
+  std::string physics = "total_stress";
+  std::string more = "";  ///< further top-level sections, each ending its line
 
   std::string text() const {
-    std::string all = "schema: 1\ntitle: verification\nphysics: total_stress\n";
+    std::string all = fmt::format("schema: 1\ntitle: verification\nphysics: {}\n{}", physics, more);
     all += fmt::format("grid: {}\nmaterials:\n  soil: {}\nbodies:\n{}\n", grid, material, bodies);
     if (!gravity.empty()) all += fmt::format("gravity: {}\n", gravity);
     if (!boundaries.empty()) all += fmt::format("boundaries: {}\n", boundaries);
