@@ -52,11 +52,10 @@ class Unknowns {
   int count_ = 0;
 };
 
-/// Particles with a skeleton in order of their cells: those of a cell share their nodes, so their stiffness is summed
+/// Particles in order of their cells: those of a cell share their nodes, so their stiffness is summed
 /// densely first.
 template <int Dim>
-std::vector<std::uint32_t> by_cell(const Scene<Dim>& scene, const Materials<Dim>& materials,
-                                   std::vector<std::int64_t>& cell) {
+std::vector<std::uint32_t> by_cell(const Scene<Dim>& scene, std::vector<std::int64_t>& cell) {
   const Particles& ps = scene.particles;
   cell.resize(ps.size());
   for (std::size_t p = 0; p < ps.size(); ++p) {
@@ -68,7 +67,6 @@ std::vector<std::uint32_t> by_cell(const Scene<Dim>& scene, const Materials<Dim>
   }
   std::vector<std::uint32_t> order(ps.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::erase_if(order, [&](std::uint32_t p) { return materials[static_cast<std::size_t>(ps.material[p])].liquid(); });
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) { return cell[p] < cell[q]; });
   return order;
 }
@@ -172,7 +170,7 @@ class Assembly {
     for (std::size_t m = 0; m < materials_.size(); ++m)
       if (!materials_[m].liquid())
         slowest = std::min(slowest, materials_[m].elasticity().constrained_modulus() / materials_[m].density());
-    return slowest;
+    return std::isfinite(slowest) ? slowest : 1;
   }
 
   const Scene<Dim>& scene_;
@@ -220,7 +218,7 @@ void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials, con
   Unknowns<Dim> unknowns(scene);
   Assembly<Dim> assembly(scene, materials, loads, unknowns);
   std::vector<std::int64_t> cell;
-  const std::vector<std::uint32_t> order = by_cell(scene, materials, cell);
+  const std::vector<std::uint32_t> order = by_cell(scene, cell);
   for (std::size_t begin = 0; begin < order.size();) {
     std::size_t end = begin;
     while (end < order.size() && cell[order[end]] == cell[order[begin]]) ++end;
@@ -228,7 +226,6 @@ void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials, con
     begin = end;
   }
 
-  if (order.empty()) return;
   SparseCholesky cholesky;
   cholesky.factorize(assembly.matrix());
   const Eigen::VectorXd solution = cholesky.solve(assembly.force());
@@ -236,9 +233,11 @@ void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials, con
   std::vector<double> displacement;
   double extent = 0;
   for (const std::uint32_t p : order) {
-    const auto elasticity = materials[static_cast<std::size_t>(scene.particles.material[p])].elasticity();
-    displacement.push_back(set_stress(scene, elasticity, solution, unknowns, p));
+    // Liquids press with their weight on what lies below; they hold no stress.
+    const Material& material = materials[static_cast<std::size_t>(scene.particles.material[p])];
+    if (!material.liquid()) displacement.push_back(set_stress(scene, material.elasticity(), solution, unknowns, p));
   }
+  if (displacement.empty()) return;
   for (int a = 0; a < Dim; ++a) extent = std::max(extent, scene.grid.max[a] - scene.grid.min[a]);
   // The median: a few particles at a thin toe may hang on nodes that nothing else holds.
   const auto median = displacement.begin() + static_cast<std::ptrdiff_t>(displacement.size() / 2);

@@ -218,9 +218,8 @@ void PoreWater<Dim>::scatter_pressure(Scene<Dim>& scene, std::size_t b, const Pa
   double* stress = columns.data(total_stress_);
   for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] = -pressure[p];
   if (outside.any()) {
-    const double* wet = columns.data(wet_);
     const double* here = columns.data(outside_pressure_);
-    for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] += wet[p] * here[p];
+    for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] += here[p];
   }
   ScatterInput<Dim> in = scene.scatter_input(block);
   in.stress.fill(columns.data(zero_));
@@ -350,8 +349,10 @@ void PoreWater<Dim>::follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& 
   double* volume = columns.data(scene.particles.volume);
   double* mass = columns.data(scene.particles.mass);
   double* porosity = columns.data(porosity_);
+  double* inertia = columns.data(inertia_);
   const double* solid = columns.data(solid_mass_);
   const double* wet = columns.data(wet_);
+  const bool follows = water_.formulation == Formulation::u_p;
   for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
     const Batch& batch = scene.blocks.batches()[k];
     const auto m = static_cast<std::size_t>(batch.material);
@@ -366,6 +367,7 @@ void PoreWater<Dim>::follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& 
         const double n = 1 - solid[p] / (grains * volume[p]);
         porosity[p] = n;
         mass[p] = solid[p] + wet[p] * n * water_.density * volume[p];
+        if (follows) inertia[p] = mass[p];
       }
     }
   }

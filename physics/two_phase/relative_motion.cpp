@@ -89,6 +89,24 @@ std::array<const double*, Dim> RelativeMotion<Dim>::velocity(const Particles& pa
   return velocity;
 }
 
+/// m_w (v + r)^2 / 2 - m_w v^2 / 2 of the pore water.
+template <int Dim>
+double RelativeMotion<Dim>::kinetic_energy(const Particles& particles) const {
+  if (!active_) return 0;
+  const Columns& columns = particles.columns;
+  double sum = 0;
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    if (pores_.spaces()[static_cast<std::size_t>(particles.material[p])].liquid) continue;
+    const double mass = columns.data(pores_.wet())[p] * columns.data(pores_.porosity())[p] * water_.density *
+                        columns.data(particles.volume)[p];
+    for (int a = 0; a < Dim; ++a) {
+      const double r = columns.data(velocity_, a)[p], v = columns.data(particles.velocity, a)[p];
+      sum += mass * r * (v + 0.5 * r);
+    }
+  }
+  return sum;
+}
+
 template <int Dim>
 ScatterInput<Dim> RelativeMotion<Dim>::water_input(Scene<Dim>& scene, const ParticleBlock<Dim>& block) {
   Columns& columns = scene.particles.columns;

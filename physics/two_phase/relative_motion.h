@@ -21,6 +21,9 @@ class RelativeMotion {
   /// Relative velocities of the particles; nulls where there are none.
   std::array<const double*, Dim> velocity(const Particles& particles) const;
 
+  /// Kinetic energy that the water has because it does not move with the solid: m_w ((v + r)^2 - v^2) / 2 [J].
+  double kinetic_energy(const Particles& particles) const;
+
   /// Particles to nodes: {m_w, m_w r}.
   void scatter(Scene<Dim>& scene);
   /// Sums them. With a projection, the nodes' velocity becomes that of the mixture, V = v + (m_w / m) r, until they are

@@ -32,7 +32,8 @@ class Seepage {
         pressure_(grid.vertices().size(), 0),
         relative_(sums.size(), 1),
         kind_(grid.vertices().size(), Kind::closed),
-        given_(grid.vertices().size(), 0) {
+        given_(grid.vertices().size(), 0),
+        outflow_(grid.vertices().size(), 0) {
     for (std::size_t v = 0; v < kind_.size(); ++v) classify(v, water, outside, unit_weight, time);
   }
 
@@ -89,6 +90,10 @@ class Seepage {
       const auto face = water.faces.find(names[static_cast<std::size_t>(f)]);
       if (face == water.faces.end() || vertex.place[f / 2] != (f % 2 == 0 ? 0 : geometry_.cells[f / 2])) continue;
       const auto& [pressure, head, flux] = face->second;
+      if (flux) {
+        const double area = 2 * vertex.share * geometry_.cell_volume() / geometry_.cell[f / 2];
+        outflow_[v] += flux->at(time) * area;
+      }
       const double below = head ? head->at(time) - x[Dim - 1] : 0;
       if (head && below <= 0) kind_[v] = Kind::closed;
       if (!pressure && below <= 0) continue;
@@ -158,7 +163,10 @@ class Seepage {
           });
     }
     for (std::size_t v = 0; v < kind_.size(); ++v) {
-      if (!fixed(v) && kind_[v] != Kind::none) continue;
+      if (!fixed(v) && kind_[v] != Kind::none) {
+        right_[static_cast<Eigen::Index>(v)] -= outflow_[v];
+        continue;
+      }
       matrix.coeffRef(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(v)) = 1;
       right_[static_cast<Eigen::Index>(v)] = fixed(v) ? value(v) : 0;
     }
@@ -205,8 +213,7 @@ class Seepage {
   double discharge() const {
     const std::vector<double> flow = inflow();
     double sum = 0;
-    for (std::size_t v = 0; v < flow.size(); ++v)
-      if (fixed(v)) sum += std::max(0.0, flow[v]);
+    for (std::size_t v = 0; v < flow.size(); ++v) sum += std::max(0.0, fixed(v) ? flow[v] : -outflow_[v]);
     return sum;
   }
 
@@ -219,6 +226,7 @@ class Seepage {
   std::vector<double> relative_;  // permeability of the cells
   std::vector<Kind> kind_;
   std::vector<double> given_;
+  std::vector<double> outflow_;  // through faces with a flux [m3/s]
   Eigen::VectorXd right_;
 };
 

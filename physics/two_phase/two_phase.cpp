@@ -84,6 +84,8 @@ void TwoPhase<Dim>::initialise(Scene<Dim>& scene) {
 /// Steady seepage decides which part of the soil is wet, too.
 template <int Dim>
 void TwoPhase<Dim>::start_seepage(Scene<Dim>& scene) {
+  if (pores_.any_liquid())
+    throw CaseError("water.initial: steady_seepage does not know bodies of water; use ponds, or `method: hydrostatic`");
   activate_blocks(scene);
   pressure_.prepare(scene, pores_.wet_blocks(scene));
   pores_.collect_at_rest(scene, pressure_);
@@ -245,7 +247,7 @@ void TwoPhase<Dim>::restore(const Archive& archive) {
 
 template <int Dim>
 std::vector<std::pair<std::string, double>> TwoPhase<Dim>::energies(const Scene<Dim>& scene) const {
-  return {{"kinetic", kinetic_energy(scene)},
+  return {{"kinetic", kinetic_energy(scene) + relative_.kinetic_energy(scene.particles)},
           {"elastic", stress_.materials().stored_energy(scene.particles)},
           {"potential", potential_energy(scene)},
           {"water_compression", pores_.compression_energy(scene.particles)},

@@ -244,6 +244,16 @@ WaterCase read_water(const Case& definition) {
     fail("saturation", "water.saturation below 1 needs a bulk_modulus, for example 2.2 GPa");
   if (water.formulation == Formulation::explicit_ && !water.bulk_modulus)
     fail("formulation", "water: `formulation: explicit` needs a bulk_modulus, for example 2.2 GPa");
+  if (water.formulation == Formulation::explicit_ && water.increment != 1)
+    fail("increment", "water: `formulation: explicit` has no increments of the pressure; leave out increment");
+  if (water.formulation == Formulation::explicit_ && !water.ponds.empty())
+    fail("ponds", "water: `formulation: explicit` knows no ponds");
+  for (const auto& [name, face] : water.faces) {
+    const bool drained = face.pressure && face.pressure->value == std::vector<double>{0};
+    if (water.formulation == Formulation::explicit_ && !drained && (face.pressure || face.head || face.flux))
+      fail("faces",
+           fmt::format("water.faces.{}: `formulation: explicit` knows drained and impermeable faces only", name));
+  }
   if (water.initial.method == InitialPressure::Method::hydrostatic && !water.initial.level && water.table.empty())
     fail("initial", "water.initial: `method: hydrostatic` needs a level, or a water table");
   const bool weighs = definition.gravity.back() != 0;
