@@ -385,14 +385,29 @@ void PoreWater<Dim>::compress(Scene<Dim>& scene, const ParticleBlock<Dim>& block
     if (wet[p] != 0) pressure[p] -= dt * stiffness / porosity[p] * (solid[p] + porosity[p] * relative[p]);
 }
 
+namespace {
+
+/// The fast wave of a skeleton of modulus M and water of stiffness Q = K / n without drag between them; drag slows it
+/// down to that of both as one. Partial densities [kg/m3]; returns (m/s)^2.
+double fast_wave_squared(double M, double Q, double porosity, double solid, double water) {
+  const double n = porosity, sum = (M + (1 - n) * (1 - n) * Q) / solid + n * n * Q / water;
+  return 0.5 * (sum + std::sqrt(sum * sum - 4 * M * n * n * Q / (solid * water)));
+}
+
+}  // namespace
+
 template <int Dim>
 double PoreWater<Dim>::fastest_sound(const Particles& particles) const {
   const Columns& columns = particles.columns;
   double fastest = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
-    double modulus = materials_[static_cast<std::size_t>(particles.material[p])].elasticity().constrained_modulus();
-    if (columns.data(wet_)[p] != 0) modulus += 1 / (water_.compressibility() * columns.data(porosity_)[p]);
-    fastest = std::max(fastest, modulus * columns.data(particles.volume)[p] / columns.data(particles.mass)[p]);
+    const auto m = static_cast<std::size_t>(particles.material[p]);
+    const double modulus = materials_[m].elasticity().constrained_modulus(), n = columns.data(porosity_)[p];
+    const double volume = columns.data(particles.volume)[p], density = columns.data(particles.mass)[p] / volume;
+    const double wet = columns.data(wet_)[p] != 0 ? 1 / (water_.compressibility() * n) : 0;
+    const double solid = columns.data(solid_mass_)[p] / volume;
+    fastest = std::max(fastest, wet > 0 && density > solid ? fast_wave_squared(modulus, wet, n, solid, density - solid)
+                                                           : (modulus + wet) / density);
   }
   return std::sqrt(fastest);
 }

@@ -77,7 +77,7 @@ class PoreWater {
   /// Porosity and masses from the volumes, eq. (50).
   void follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& block);
 
-  /// Largest speed of sound in soil whose water moves with it, sqrt((M + K_w / n) / rho) [m/s].
+  /// Largest speed of sound, where no drag holds the water back [m/s].
   double fastest_sound(const Particles& particles) const;
 
   /// Energy stored in the compressed water, and its volume [J], [m3].

@@ -33,6 +33,7 @@ struct SaturatedColumn {
   std::string permeability = "";  ///< instead of the soil's, constant
   Scheme scheme = {};
   double room = 2;  ///< cells above the column
+  double base = 0;  ///< cells below it; then nothing holds it
 
   double cell() const { return height / cells; }
   /// The Poisson ratio is 0.3.
@@ -45,19 +46,21 @@ struct SaturatedColumn {
   SceneText scene() const {
     const double h = cell(), n = soil.porosity;
     const std::string zero = point(0, 0);
-    SceneText text{.grid = fmt::format("{{min: {}, max: {}, cell: {} m}}", zero, point(h, height + room * h), h),
-                   .material = fmt::format(
-                       "{{model: linear_elastic, density: {} kg/m3, youngs_modulus: {} Pa, poisson_ratio: 0.3, "
-                       "water: {{porosity: {}, permeability: {}, permeability_law: constant}}}}",
-                       (1 - n) * soil.solid_density, youngs_modulus(), n,
-                       permeability.empty() ? fmt::format("{} m/s", soil.conductivity) : permeability),
-                   .bodies = fmt::format("  - {{material: soil, box: {{min: {}, max: {}}}}}", zero, point(h, height)),
-                   .gravity = gravity,
-                   .boundaries = fmt::format("{{bottom: roller, left: roller, right: roller{}{}}}",
-                                             dimension == 3 ? ", front: roller, back: roller" : ""),
-                   .initial_stress = initial_stress,
-                   .scheme = scheme,
-                   .physics = "two_phase"};
+    SceneText text{
+        .grid = fmt::format("{{min: {}, max: {}, cell: {} m}}", zero, point(h, height + (base + room) * h), h),
+        .material =
+            fmt::format("{{model: linear_elastic, density: {} kg/m3, youngs_modulus: {} Pa, poisson_ratio: 0.3, "
+                        "water: {{porosity: {}, permeability: {}, permeability_law: constant}}}}",
+                        (1 - n) * soil.solid_density, youngs_modulus(), n,
+                        permeability.empty() ? fmt::format("{} m/s", soil.conductivity) : permeability),
+        .bodies = fmt::format("  - {{material: soil, box: {{min: {}, max: {}}}}}", point(0, base * h),
+                              point(h, height + base * h)),
+        .gravity = gravity,
+        .boundaries = fmt::format("{{{}left: roller, right: roller{}}}", base > 0 ? "" : "bottom: roller, ",
+                                  dimension == 3 ? ", front: roller, back: roller" : ""),
+        .initial_stress = initial_stress,
+        .scheme = scheme,
+        .physics = "two_phase"};
     text.more = fmt::format("water: {{formulation: {}, {}{}{}density: {} kg/m3}}\n", formulation, water,
                             initial.empty() ? "" : fmt::format("initial: {}, ", initial),
                             faces.empty() ? "" : fmt::format("faces: {}, ", faces), soil.water_density);
