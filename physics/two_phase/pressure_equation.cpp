@@ -258,7 +258,9 @@ typename PressureEquation<Dim>::Crossing PressureEquation<Dim>::crossing(std::si
   return {share, outside.of_ponds(x, time)};
 }
 
-/// Water that leaves through faces with a prescribed flux at a vertex [m3/s].
+/// Water that leaves through faces with a prescribed flux at a vertex [m3/s]. Where the water has an inertia of its
+/// own, the share rho_w / rho of it moves with the mixture, whose nodes are free at such a face, and has been counted
+/// there.
 template <int Dim>
 double PressureEquation<Dim>::face_flux(const typename Grid::Vertex& vertex, double time) const {
   double flux = 0;
@@ -269,7 +271,11 @@ double PressureEquation<Dim>::face_flux(const typename Grid::Vertex& vertex, dou
       const double area = 2 * vertex.share * geometry_.cell_volume() / geometry_.cell[a];
       flux += face->flux->at(time) * area;
     }
-  return flux;
+  if (flux == 0 || water_.formulation != Formulation::v_w_p) return flux;
+  CellSums<Dim> around;
+  for (const std::int32_t cell : vertex.cell)
+    if (cell >= 0) around.add(sums_[static_cast<std::size_t>(cell)]);
+  return around.volume > 0 ? flux * (1 - water_.density * around.inverse_density / around.volume) : flux;
 }
 
 /// Eqs. (46) and (48). A line that leaves the water is continued to the vertex outside by the straight line through the
