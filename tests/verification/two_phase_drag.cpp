@@ -1,6 +1,5 @@
 /// Drag between water and grains: it may be stiffer than anything else by ten orders of magnitude and sets no step.
 /// Source: relaxation of two masses, exp(-D t / mu), with the momentum of both kept (EX.2).
-#include "tests/verification/exact/explicit_limits.h"
 #include "tests/verification/saturated_column.h"
 
 namespace sluice {

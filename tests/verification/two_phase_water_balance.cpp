@@ -20,7 +20,7 @@ double mean_between(const Particles& particles, const std::string& name, int com
 /// A soft column that a load presses together by a fifth.
 SaturatedColumn oedometer(const std::string& formulation) {
   SaturatedColumn column;
-  column.soil = sand(1e-4);
+  column.soil = sand(1e-2);
   column.soil.modulus = 1e5;
   column.cells = 20;
   column.formulation = formulation;
@@ -42,10 +42,10 @@ TEST(WaterBalance, OfADrainedOedometer) {
     const auto grains = by_id(particles, "solid_mass");
     const double volume = sum(by_id(particles, "volume")), mass = sum(by_id(particles, "mass"));
     double outflow = 0;  // per area
-    while (simulation->time() < 10) {
+    while (simulation->time() < 30) {
       const auto z = heights(particles);
       const double top = *std::max_element(z.begin(), z.end());
-      const StepInfo step = simulation->advance(10);
+      const StepInfo step = simulation->advance(30);
       outflow -= step.dt * column.soil.conductivity / unit_weight *
                  mean_between(particles, "pore_pressure_gradient", 1, top - 0.1 * column.cell(), 2);
     }
@@ -76,18 +76,26 @@ SceneText closed(const SaturatedColumn& column) {
   return scene;
 }
 
-// Water that enters a closed box raises the mean pressure by its volume over n V / K.
+/// Mean pressure after water has entered a closed box, over its volume over n V / K.
+double filling(const std::string& formulation, int cells) {
+  SaturatedColumn column = box(formulation);
+  column.cells = cells;
+  column.soil.water_bulk_modulus = 1e8;
+  column.faces = "{top: {flux: [[0 s, -1 mm/s], [0.05 s, -1 mm/s], [0.0501 s, 0 m/s]]}}";
+  const auto simulation = simulate(closed(column));
+  simulation->advance_to(0.1);
+  const auto p = by_id(simulation->particles(), "pore_pressure");
+  return sum(p) / static_cast<double>(p.size()) / (1e-3 * 0.05005 * 1e8 / 0.4);
+}
+
+// Water that enters raises the mean pressure by its volume over n V / K: exactly with u-p, but for the round number of
+// steps. With v-w-p half of it comes in with the nodes on the face, whose relative velocity is that of the soil around
+// them, half a cell inside: an error of first order, here where the flow falls from q at the face to nothing.
 TEST(ClosedBox, HoldsItsMeanPressureByTheStiffnessOfTheWater) {
-  for (const char* formulation : {"u-p", "v-w-p"}) {
-    SaturatedColumn column = box(formulation);
-    column.soil.water_bulk_modulus = 1e8;
-    column.faces = "{top: {flux: [[0 s, -1 mm/s], [0.05 s, -1 mm/s], [0.0501 s, 0 m/s]]}}";
-    const auto simulation = simulate(closed(column));
-    simulation->advance_to(0.1);
-    const auto p = by_id(simulation->particles(), "pore_pressure");
-    const double expected = 1e-3 * 0.05005 * 1e8 / 0.4;
-    EXPECT_NEAR(sum(p) / static_cast<double>(p.size()) / expected, 1, 0.01) << formulation;
-  }
+  EXPECT_NEAR(filling("u-p", 10), 1, 0.01);
+  const double coarse = 1 - filling("v-w-p", 10), fine = 1 - filling("v-w-p", 20);
+  EXPECT_LT(std::abs(coarse), 0.06);
+  EXPECT_LT(std::abs(fine), 0.6 * std::abs(coarse));
 }
 
 // No water in, no mean pressure: weight makes it fall from the bottom to the top around zero.
@@ -105,7 +113,9 @@ TEST(ClosedBox, WeightLeavesTheMeanPressure) {
 
 TEST(ClosedBox, OfIncompressibleWaterIsAnError) {
   for (const char* formulation : {"u-p", "v-w-p"}) {
-    const auto simulation = simulate(closed(box(formulation)));
+    SaturatedColumn column = box(formulation);
+    column.gravity = "[0, -9.81]";
+    const auto simulation = simulate(closed(column));
     try {
       simulation->advance(1);
       ADD_FAILURE() << "nothing determines the pressure";
@@ -197,10 +207,15 @@ TEST(Faces, UnequalPermeabilitiesStretchTheFlow) {
   ASSERT_EQ(p.size(), q.size());
   for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(p[i], q[i], 1e-6 * 10e3);
   EXPECT_GT(largest_magnitude(by_id(plain->particles(), "pore_pressure_gradient", 0)), 1000);
-  // The step holds the flow that the steady solution found.
+  // The step holds the flow that the steady solution found, but for the cells around the corner where the given
+  // pressure jumps.
   wide->advance_to(0.5);
-  const auto later = by_id(wide->particles(), "pore_pressure");
-  for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(later[i], p[i], 0.02 * 10e3);
+  const Particles& particles = wide->particles();
+  const auto later = by_id(particles, "pore_pressure"), x = by_id(particles, "position"), z = heights(particles);
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (std::hypot(x[i] / 2, 1 - z[i]) > 0.3) {
+      EXPECT_NEAR(later[i], p[i], 0.02 * 10e3) << x[i] << ", " << z[i];
+    }
 }
 
 }  // namespace
