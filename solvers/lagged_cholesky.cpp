@@ -228,7 +228,8 @@ LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> valu
     bool renew = factorized_values_.empty() || rule_.renew();
     if (!renew) {
       const Outcome outcome = iterate(values, b, x, distance, Preconditioner::lagged, report.iterations);
-      renew = outcome != Outcome::converged;
+      report.converged = outcome == Outcome::converged;
+      renew = outcome == Outcome::given_up;
       if (!renew) rule_.aged(report.iterations);
     }
     if (renew) {
@@ -237,8 +238,9 @@ LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> valu
       report.factorized = true;
       if (before > 0) distance = start(values, b, x);
       for (const auto preconditioner : {Preconditioner::fresh, Preconditioner::fresh_double}) {
-        report.converged = iterate(values, b, x, distance, preconditioner, report.iterations) == Outcome::converged;
-        if (report.converged) break;
+        const Outcome outcome = iterate(values, b, x, distance, preconditioner, report.iterations);
+        report.converged = outcome == Outcome::converged;
+        if (outcome != Outcome::given_up) break;
         distance = start(values, b, x);
       }
       rule_.renewed(before, report.iterations - before);
@@ -285,7 +287,7 @@ void LaggedCholesky::factorize(std::span<const double> values) {
 LaggedCholesky::Outcome LaggedCholesky::iterate(std::span<const double> values, std::span<const double> b,
                                                 std::span<double> x, double distance, Preconditioner preconditioner,
                                                 int& iterations) {
-  constexpr int most_refinements = 10;
+  constexpr int most_refinements = 20;
   const bool fresh = preconditioner != Preconditioner::lagged;
   const double first = distance;
   double true_distance = distance, last_rho = 0;
@@ -311,7 +313,7 @@ LaggedCholesky::Outcome LaggedCholesky::iterate(std::span<const double> values, 
       // The residual carried along drifts away from b - A x by round-off.
       distance = update_residual(values, b, x);
       if (distance <= 1) return Outcome::converged;
-      if (!(distance < true_distance / 2)) return Outcome::given_up;
+      if (!(distance < true_distance / 2)) return Outcome::at_round_off;
       true_distance = distance, last_rho = 0;
     } else if (!fresh && rule_.give_up(i, first, distance)) {
       return Outcome::given_up;

@@ -13,9 +13,10 @@
 /// With Choice::counted the costs are numbers of operations, known from the analysis: the same systems give the same
 /// bits on any run. With Choice::measured they are times of this machine.
 ///
-/// The preconditioner is a copy of the factor in single precision (packed_factor.h), which is applied two to four times
-/// as fast. After a factorization the same iteration serves as iterative refinement: it ends after two steps or so.
-/// Should it not, because the matrix is worse conditioned than single precision bears, the factor itself takes over.
+/// The preconditioner is a copy of the factor in single precision (packed_factor.h), which is applied two to three
+/// times as fast. After a factorization the same iteration serves as iterative refinement: it ends after two steps or
+/// so. Should it not, because the matrix is worse conditioned than single precision bears, the factor itself takes
+/// over.
 ///
 /// Reference: M. R. Hestenes, E. Stiefel, Methods of conjugate gradients for solving linear systems, J. Res. Natl. Bur.
 /// Stand. 49 (1952).
@@ -80,8 +81,8 @@ class LaggedCholesky {
   struct Report {
     int iterations = 0;  ///< 0 where the guess was good enough
     bool factorized = false;
-    /// False where round-off keeps the residual above what was asked for, even with a new factor and refinement; x is
-    /// the best that was reached.
+    /// False where round-off keeps the residual above what was asked for, whatever the preconditioner; x is the best
+    /// that was reached, and the solution for most purposes.
     bool converged = true;
     double residual = 0;          ///< ||b - A x|| / ||b||
     double largest_residual = 0;  ///< max |b - A x|, in the unit of b
@@ -109,7 +110,7 @@ class LaggedCholesky {
   void restore(const State& state);
 
  private:
-  enum class Outcome { converged, given_up };
+  enum class Outcome { converged, given_up, at_round_off };
   enum class Preconditioner { lagged, fresh, fresh_double };
   /// Of a residual or right-hand side r: ||r||, ||D^-1/2 r||, max |r_i|.
   struct Norms {

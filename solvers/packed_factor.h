@@ -2,8 +2,8 @@
 ///
 /// Solving with a factor reads all of it twice and computes little: its time is that of moving the numbers. Half as
 /// many bytes, without the zeros that CHOLMOD keeps above the diagonal and without a call for each small block, make
-/// the solution two to four times as fast. Seven digits are plenty for a preconditioner as long as the condition number
-/// is below 1e7 or so; conjugate gradients restore all digits.
+/// the solution two to three times as fast. Seven digits are plenty for a preconditioner as long as the condition
+/// number is below 1e7 or so; conjugate gradients restore all digits.
 ///
 /// The copy is that of D^-1/2 A D^-1/2 with D the diagonal of A, whose factor has no entry above one: coefficients of
 /// any size fit into single precision.

@@ -24,7 +24,7 @@ namespace {
 
 /// Threads of the libraries, until its end. OpenBLAS has one number of threads for the whole program. CHOLMOD opens an
 /// OpenMP region of four threads for every block of the factor: blocks are so small that it waits for threads most of
-/// the time, two to four times as long as one thread needs for the work. No level of active regions means one thread.
+/// the time, and takes up to four times as long as one thread alone. No level of active regions means one thread.
 class LibraryThreads {
  public:
   explicit LibraryThreads(int blas) : blas_(openblas_get_num_threads()), openmp_levels_(omp_get_max_active_levels()) {
