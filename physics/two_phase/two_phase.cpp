@@ -27,7 +27,7 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
       initial_stress_(read_initial_stress(definition.initial_stress)),
       loads_(read_surface_loads(definition.surface_loads, Dim)),
       stress_(without_pores(definition)),
-      pores_(water_, read_pore_spaces(definition, liquids(stress_.materials())), stress_.materials()),
+      pores_(water_, read_pore_spaces(definition, water_, liquids(stress_.materials())), stress_.materials()),
       relative_(definition, water_, pores_),
       outside_(loads_, water_.ponds, -water_.density * definition.gravity.back(), grid_of<Dim>(definition.grid)),
       pressure_(water_, grid_of<Dim>(definition.grid), definition.gravity.back()) {

@@ -75,7 +75,8 @@ Node resolved(const WaterCase& water, int dimension);
 std::vector<FieldDoc> water_docs();
 
 /// Pore spaces by index of the material; `liquid` says which of them are liquids. Throws CaseError.
-std::vector<PoreSpace> read_pore_spaces(const Case& definition, const std::vector<bool>& liquid);
+std::vector<PoreSpace> read_pore_spaces(const Case& definition, const WaterCase& water,
+                                        const std::vector<bool>& liquid);
 Node resolved(const PoreSpace& pores);
 
 /// The case without the keys `water` of the materials, as the constitutive models want it.

@@ -123,7 +123,7 @@ struct Block {
       : definition(parse_case(text(more), "block.yaml")),
         water(read_water(definition)),
         materials(without_pores(definition)),
-        pores(water, read_pore_spaces(definition, {false}), materials),
+        pores(water, read_pore_spaces(definition, water, {false}), materials),
         scene(definition) {
     pores.declare(scene.particles, true);
     fill_bodies<2>(
