@@ -113,8 +113,8 @@ TEST(CaseWater, WantsOnePermeabilityWhereTheWaterHasItsOwnInertia) {
 TEST(CaseWater, WantsATableThatAscends) {
   EXPECT_EQ(with_water("table: [[0, 2 m], [0, 3 m]]"),
             "c.yaml:11:27: water.table: x = 0 m must be beyond that of the point before, 0 m");
-  EXPECT_NE(with_water("table: []").find("expected points [[x, z], …]"), std::string::npos);
-  EXPECT_NE(with_water("table: 3 m").find("expected points [[x, z], …]"), std::string::npos);
+  EXPECT_NE(with_water("table: []").find("expected points [[x, y], …]"), std::string::npos);
+  EXPECT_NE(with_water("table: 3 m").find("expected points [[x, y], …]"), std::string::npos);
 }
 
 TEST(CaseWater, WantsALevelForHydrostaticPressure) {

@@ -76,21 +76,26 @@ TEST(Drag, RateIsThatOfTheSolution) {
 // The acceleration in Darcy's law of u-p holds the old pressure; explicitly that would grow in coarse soil with rho < 2
 // rho_w and short steps. The load is 1 kPa, and the exact pressure never exceeds 2 rho / (rho - rho_w) of it by far.
 TEST(Drag, LightCoarseSoilStaysBounded) {
-  for (const double k : {0.1, 1.0}) {
-    SaturatedColumn column;
-    column.soil = sand(k);
-    column.soil.porosity = 0.5;
-    column.cells = 20;
-    column.load = "1 kPa";
-    column.scheme = column.scheme.with("courant: 0.02");
-    const auto simulation = simulate(column);
-    double largest = 0;
-    for (int i = 0; i < 3000; ++i) {
-      simulation->advance(1e6);
-      largest = std::max(largest, largest_magnitude(by_id(simulation->particles(), "pore_pressure")));
-    }
-    EXPECT_LT(largest, 2500) << k;
+  SaturatedColumn column;
+  column.soil = sand(0.1);
+  column.soil.porosity = 0.5;
+  column.cells = 20;
+  column.load = "1 kPa";
+  column.scheme = column.scheme.with("courant: 0.02");
+  const auto simulation = simulate(column);
+  double largest = 0;
+  for (int i = 0; i < 3000; ++i) {
+    simulation->advance(1e6);
+    largest = std::max(largest, largest_magnitude(by_id(simulation->particles(), "pore_pressure")));
   }
+  EXPECT_LT(largest, 2500);
+}
+
+/// Coarser still, u-p is neither valid nor stable in the steps that the skeleton allows: it says so.
+TEST(Drag, SoilTooCoarseForUPIsRefused) {
+  SaturatedColumn column;
+  column.soil = sand(1.0);
+  EXPECT_THROW(simulate(column), CaseError);
 }
 
 }  // namespace
