@@ -51,6 +51,18 @@ Schema<HalfSpace> half_space_schema() {
                   "Points out of the half-space; of any length but 0.");
 }
 
+Schema<Sphere> sphere_schema() {
+  return Schema<Sphere>("sphere")
+      .quantities("centre", &Sphere::centre, unit::length, any_number, dimensions, "Its centre.")
+      .quantity("radius", &Sphere::radius, unit::length, above(0), "Its radius.");
+}
+
+void read_sphere(Region& region, const Node& node, Problems& problems) {
+  static const Schema<Sphere> schema = sphere_schema();
+  Sphere sphere = schema.read(node, {}, problems);
+  if (!sphere.centre.empty() && sphere.radius > 0) region.parts.emplace_back(std::move(sphere));
+}
+
 void read_box(Region& region, const Node& node, Problems& problems) {
   static const Schema<Box> schema = box_schema();
   Box box = schema.read(node, {}, problems);
@@ -135,7 +147,12 @@ Node write_half_spaces(const Region& region) {
   return all.items.empty() ? Node{} : all;
 }
 
-/// Adds the three shapes to the schema of something that has a region; `region_of` gives it, made where there is none.
+Node write_sphere(const Region& region) {
+  const auto spheres = shapes_of<Sphere>(region);
+  return spheres.empty() ? Node{} : sphere_schema().write(spheres.front());
+}
+
+/// Adds the shapes to the schema of something that has a region; `region_of` gives it, made where there is none.
 template <class T, class Mutable, class Constant>
 Schema<T>& with_shapes(Schema<T>& schema, const Mutable& mutable_region, const Constant& constant_region) {
   const auto add = [&](FieldDoc doc, void (*read)(Region&, const Node&, Problems&), Node (*write)(const Region&)) {
@@ -166,6 +183,12 @@ Schema<T>& with_shapes(Schema<T>& schema, const Mutable& mutable_region, const C
        .nested = half_space_schema().docs(),
        .alternatives = {{.type = field_type::sections, .nested = half_space_schema().docs()}}},
       read_half_space, write_half_spaces);
+  add({.name = "sphere",
+       .type = field_type::section,
+       .default_text = "none",
+       .sentence = "Ball; in 2-D a disc.",
+       .nested = sphere_schema().docs()},
+      read_sphere, write_sphere);
   return schema;
 }
 

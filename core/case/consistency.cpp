@@ -220,14 +220,16 @@ class Consistency {
 
 bool check_region(const Region& region, const Node& section, const std::string& what, std::size_t dimension,
                   Problems& problems) {
-  const bool named = section.find("box") || section.find("polygon") || section.find("half_space");
+  const bool named =
+      section.find("box") || section.find("polygon") || section.find("half_space") || section.find("sphere");
   if (!named && section.kind == Node::Kind::map)
-    problems.add(section.place, what + ": it has no shape; give one or more of box, polygon, half_space");
+    problems.add(section.place, what + ": it has no shape; give one or more of box, polygon, half_space, sphere");
   for (const Primitive& part : region.parts) {
     std::size_t found = dimension;
     std::string shape;
     if (const auto* const box = std::get_if<Box>(&part)) found = box->min.size(), shape = "box";
     if (const auto* const half = std::get_if<HalfSpace>(&part)) found = half->point.size(), shape = "half_space";
+    if (const auto* const ball = std::get_if<Sphere>(&part)) found = ball->centre.size(), shape = "sphere";
     if (found == dimension) continue;
     problems.add(place_of(section, shape),
                  fmt::format("{}: found {} components; the grid has {} dimensions", shape, found, dimension));

@@ -115,6 +115,29 @@ Bounds bounds_of(const HalfSpace& half_space, std::size_t dimension) {
   return bounds;
 }
 
+// ---- sphere ----
+
+double distance_from_centre(const Sphere& sphere, std::span<const double> x) {
+  double squared = 0;
+  for (std::size_t a = 0; a < x.size(); ++a) squared += (x[a] - sphere.centre[a]) * (x[a] - sphere.centre[a]);
+  return std::sqrt(squared);
+}
+
+bool contains(const Sphere& sphere, std::span<const double> x) {
+  return distance_from_centre(sphere, x) <= sphere.radius;
+}
+
+double distance(const Sphere& sphere, std::span<const double> x) {
+  return std::abs(distance_from_centre(sphere, x) - sphere.radius);
+}
+
+Bounds bounds_of(const Sphere& sphere, std::size_t) {
+  Bounds bounds{sphere.centre, sphere.centre};
+  for (double& low : bounds[0]) low -= sphere.radius;
+  for (double& high : bounds[1]) high += sphere.radius;
+  return bounds;
+}
+
 }  // namespace
 
 double Polygon::area() const {

@@ -1,4 +1,4 @@
-/// Regions of space in a case file: boxes, polygons, half-spaces, and intersections of them.
+/// Regions of space in a case file: boxes, polygons, half-spaces, spheres, and intersections of them.
 #pragma once
 
 #include <array>
@@ -25,7 +25,13 @@ struct HalfSpace {
   std::vector<double> point, normal;
 };
 
-using Primitive = std::variant<Box, Polygon, HalfSpace>;
+/// All x within `radius` of the centre; a circle in 2-D.
+struct Sphere {
+  std::vector<double> centre;
+  double radius = 0;
+};
+
+using Primitive = std::variant<Box, Polygon, HalfSpace, Sphere>;
 
 /// The intersection of its parts.
 struct Region {

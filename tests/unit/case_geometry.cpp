@@ -85,6 +85,18 @@ TEST(Geometry, LatticeOnTheEdgesOfATilingIsCountedOnce) {
   EXPECT_EQ(count, 96);
 }
 
+TEST(Geometry, SphereIsADiscInThePlane) {
+  const Region disc{{Sphere{{1, 2}, 2}}}, ball{{Sphere{{1, 2, 3}, 2}}};
+  EXPECT_TRUE(in(disc, {3, 2}));
+  EXPECT_FALSE(in(disc, {2.5, 3.5}));
+  EXPECT_TRUE(in(ball, {2, 3, 4}));
+  EXPECT_FALSE(in(ball, {2.2, 3.2, 4.2}));
+  EXPECT_DOUBLE_EQ(ball.distance_to_surface(std::vector{1.0, 2.0, 3.5}), 1.5);
+  EXPECT_DOUBLE_EQ(disc.distance_outside(std::vector{4.0, 6.0}), 3);
+  EXPECT_EQ(ball.bounds(3)[0], (std::vector<double>{-1, 0, 1}));
+  EXPECT_EQ(ball.bounds(3)[1], (std::vector<double>{3, 4, 5}));
+}
+
 TEST(Geometry, RegionIsTheIntersectionOfItsParts) {
   const Region region{{Box{{0, 0}, {4, 4}}, HalfSpace{{0, 3}, {0, 1}}, HalfSpace{{0, 0}, {1, 1}}}};
   EXPECT_FALSE(in(region, {1, 3.5}));
