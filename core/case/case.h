@@ -62,9 +62,10 @@ enum class OutflowPolicy { error, remove, clamp };
 /// A number that is followed during a run and written to observations.csv.
 struct ObservationCase {
   std::string name;
-  std::string measure;            ///< name of a registered measure, for example `front`
-  std::vector<double> direction;  ///< unit vector; empty if the measure needs none
-  std::optional<Region> region;   ///< initial region of the material that is followed; absent: everything
+  std::string measure;               ///< name of a registered measure, for example `front`
+  std::vector<double> direction;     ///< unit vector; empty if the measure needs none
+  std::optional<Region> region;      ///< initial region of the material that is followed; absent: everything
+  std::optional<std::string> field;  ///< name of a column
   Place place;
 };
 

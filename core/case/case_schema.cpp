@@ -381,7 +381,9 @@ Schema<ObservationCase> observation_schema() {
           "region", &ObservationCase::region, region_schema(),
           "Where the material that is followed lies at the start, for the measures that take a region: one shape, or "
           "the intersection of several.",
-          Absent{"everything"});
+          Absent{"everything"})
+      .text("field", &ObservationCase::field,
+            "Field of results.h5, for the measures that need one, for example `pore_pressure`.", Absent{});
 }
 
 Schema<OutputCase> output_schema() {

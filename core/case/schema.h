@@ -213,6 +213,14 @@ class Schema : public AnySchema {
         default_value);
   }
 
+  /// A text that may be absent.
+  Schema& text(const std::string& key, std::optional<std::string> T::*member, const std::string& sentence,
+               const Absent& absent) {
+    return optional_field<std::string>(
+        {.name = key, .type = field_type::text, .sentence = sentence}, member,
+        [=](const Node& node, Problems& problems) { return value::text(node, key, problems); }, &Node::text, absent);
+  }
+
   /// One of these words, kept as a word.
   Schema& word(const std::string& key, std::string T::*member, const std::vector<std::string>& words,
                const std::string& sentence, const std::optional<std::string>& default_value = std::nullopt) {

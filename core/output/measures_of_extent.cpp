@@ -35,6 +35,7 @@ std::unique_ptr<Observation> make_front(const ObservationCase& observation, cons
                                         std::span<const double> cell) {
   require_direction(observation, particles.dimension);
   refuse_region(observation);
+  refuse_field(observation);
   const double start = front_of_main_body(particles, particles.initial_position, observation.direction, cell);
   return std::make_unique<Extent>(observation.direction, cell, start, 1.0);
 }
@@ -43,6 +44,7 @@ std::unique_ptr<Observation> make_highest_point(const ObservationCase& observati
                                                 std::span<const double> cell) {
   refuse_direction(observation);
   refuse_region(observation);
+  refuse_field(observation);
   return std::make_unique<Extent>(up(particles), cell, 0.0, 1.0);
 }
 
@@ -50,6 +52,7 @@ std::unique_ptr<Observation> make_drop(const ObservationCase& observation, const
                                        std::span<const double> cell) {
   refuse_direction(observation);
   refuse_region(observation);
+  refuse_field(observation);
   const double start = front_of_main_body(particles, particles.initial_position, up(particles), cell);
   return std::make_unique<Extent>(up(particles), cell, start, -1.0);
 }

@@ -1,11 +1,10 @@
 /// Measures of motion: mean_displacement, center_of_mass, kinetic_energy, max_speed.
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
+#include "core/output/followed_material.h"
 #include "core/output/observation.h"
 
 namespace sluice {
@@ -31,26 +30,14 @@ double speed_squared(const Particles& particles, std::size_t particle) {
 
 class MeanDisplacement : public Observation {
  public:
-  /// Membership is kept by id: particles are sorted, and some may leave.
-  MeanDisplacement(std::vector<double> direction, const Region& region, const Particles& particles)
-      : direction_(std::move(direction)) {
-    std::vector<double> start(static_cast<std::size_t>(particles.dimension));
-    for (std::size_t i = 0; i < particles.size(); ++i) {
-      for (std::size_t k = 0; k < start.size(); ++k)
-        start[k] = particles.columns.data(particles.initial_position, static_cast<int>(k))[i];
-      const auto id = static_cast<std::size_t>(particles.id[i]);
-      if (id >= followed_.size()) followed_.resize(id + 1, 0);
-      followed_[id] = region.contains(start);
-    }
-  }
-  bool empty() const { return std::find(followed_.begin(), followed_.end(), 1) == followed_.end(); }
+  MeanDisplacement(const ObservationCase& observation, const Particles& particles)
+      : direction_(observation.direction), material_(observation, particles) {}
 
   double evaluate(const Particles& particles) const override {
     const double* mass = particles.columns.data(particles.mass);
     double moment = 0, total = 0;
     for (std::size_t i = 0; i < particles.size(); ++i) {
-      const auto id = static_cast<std::size_t>(particles.id[i]);
-      if (id >= followed_.size() || !followed_[id]) continue;
+      if (!material_.contains(particles, i)) continue;
       moment += mass[i] * (along(particles, particles.position, i, direction_) -
                            along(particles, particles.initial_position, i, direction_));
       total += mass[i];
@@ -61,7 +48,7 @@ class MeanDisplacement : public Observation {
 
  private:
   std::vector<double> direction_;
-  std::vector<std::uint8_t> followed_;  // by id
+  FollowedMaterial material_;
 };
 
 class CenterOfMass : public Observation {
@@ -111,16 +98,15 @@ std::unique_ptr<Observation> make_mean_displacement(const ObservationCase& obser
                                                     std::span<const double>) {
   require_direction(observation, particles.dimension);
   require_region(observation);
-  auto made = std::make_unique<MeanDisplacement>(observation.direction, *observation.region, particles);
-  if (made->empty())
-    throw CaseError(observation.place, "observation '" + observation.name + "': no material lies in its region");
-  return made;
+  refuse_field(observation);
+  return std::make_unique<MeanDisplacement>(observation, particles);
 }
 
 std::unique_ptr<Observation> make_center_of_mass(const ObservationCase& observation, const Particles& particles,
                                                  std::span<const double>) {
   require_direction(observation, particles.dimension);
   refuse_region(observation);
+  refuse_field(observation);
   return std::make_unique<CenterOfMass>(observation.direction);
 }
 
@@ -128,6 +114,7 @@ std::unique_ptr<Observation> make_kinetic_energy(const ObservationCase& observat
                                                  std::span<const double>) {
   refuse_direction(observation);
   refuse_region(observation);
+  refuse_field(observation);
   return std::make_unique<KineticEnergy>(particles.dimension);
 }
 
@@ -135,6 +122,7 @@ std::unique_ptr<Observation> make_max_speed(const ObservationCase& observation, 
                                             std::span<const double>) {
   refuse_direction(observation);
   refuse_region(observation);
+  refuse_field(observation);
   return std::make_unique<MaxSpeed>();
 }
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace sluice {
 
 namespace {
@@ -39,6 +42,21 @@ void refuse_direction(const ObservationCase& observation) {
 
 void refuse_region(const ObservationCase& observation) {
   if (observation.region) fail(observation, "takes no region: it looks at all material");
+}
+
+ColumnId require_field(const ObservationCase& observation, const Columns& columns) {
+  if (!observation.field) fail(observation, "needs a field, for example field: velocity");
+  std::vector<std::string> names;
+  for (const ColumnSpec& spec : columns.specs())
+    if (spec.output && spec.role == Role::state) names.push_back(spec.name);
+  std::sort(names.begin(), names.end());
+  if (std::find(names.begin(), names.end(), *observation.field) == names.end())
+    fail(observation, fmt::format("finds no field '{}'; there are {}", *observation.field, fmt::join(names, ", ")));
+  return columns.find(*observation.field);
+}
+
+void refuse_field(const ObservationCase& observation) {
+  if (observation.field) fail(observation, "takes no field");
 }
 
 }  // namespace sluice

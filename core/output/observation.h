@@ -36,5 +36,8 @@ void require_direction(const ObservationCase& observation, int dimension);
 void require_region(const ObservationCase& observation);
 void refuse_direction(const ObservationCase& observation);
 void refuse_region(const ObservationCase& observation);
+/// The column that the observation names; it must be one that is written to results.
+ColumnId require_field(const ObservationCase& observation, const Columns& columns);
+void refuse_field(const ObservationCase& observation);
 
 }  // namespace sluice

@@ -94,6 +94,12 @@ void PoreWater<Dim>::set_initial_pressure(Scene<Dim>& scene) {
 }
 
 template <int Dim>
+double PoreWater<Dim>::share_of_old_pressure(int material) const {
+  const bool liquid = spaces_[static_cast<std::size_t>(material)].liquid;
+  return liquid && water_.formulation != Formulation::explicit_ ? 0 : water_.increment;
+}
+
+template <int Dim>
 bool PoreWater<Dim>::any_liquid() const {
   return std::any_of(spaces_.begin(), spaces_.end(), [](const PoreSpace& space) { return space.liquid; });
 }
@@ -141,14 +147,18 @@ void PoreWater<Dim>::take_outside_pressure(Scene<Dim>& scene, const ParticleBloc
 
 template <int Dim>
 void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
-                                    double increment, const ExternalPressure<Dim>& outside) {
+                                    const ExternalPressure<Dim>& outside) {
   Columns& columns = scene.particles.columns;
   ScatterInput<Dim> in = scene.scatter_input(block);
   const double* pressure = columns.data(pressure_);
   for (int a = 0; a < Dim; ++a) {
     const double* effective = in.stress[a];
     double* total = columns.data(total_stress_, a);
-    for (std::uint32_t p = block.begin; p < block.end; ++p) total[p] = effective[p] - increment * pressure[p];
+    for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
+      const Batch& batch = scene.blocks.batches()[k];
+      const double kept = share_of_old_pressure(batch.material);
+      for (std::uint32_t p = batch.begin; p < batch.end; ++p) total[p] = effective[p] - kept * pressure[p];
+    }
     in.stress[a] = total;
   }
   if (outside.any()) {
@@ -190,7 +200,7 @@ void PoreWater<Dim>::take_pressure(Scene<Dim>& scene, std::size_t b, const Parti
 
 template <int Dim>
 void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
-                             double increment, const PressureEquation<Dim>& equation) {
+                             const PressureEquation<Dim>& equation) {
   if (!equation.is_wet(b)) {
     zero_forces(scene, scene.nodes.force_tile(b));
     return;
@@ -200,9 +210,13 @@ void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlo
   const double* added = columns.data(new_pressure_);
   double* pressure = columns.data(pressure_);
   double* stress = columns.data(total_stress_);
-  for (std::uint32_t p = block.begin; p < block.end; ++p) {
-    stress[p] = increment * pressure[p] - added[p];
-    pressure[p] = added[p];
+  for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
+    const Batch& batch = scene.blocks.batches()[k];
+    const double kept = share_of_old_pressure(batch.material);
+    for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
+      stress[p] = kept * pressure[p] - added[p];
+      pressure[p] = added[p];
+    }
   }
   ScatterInput<Dim> in = scene.scatter_input(block);
   in.stress.fill(columns.data(zero_));
@@ -300,7 +314,7 @@ double PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock
     const Batch& batch = scene.blocks.batches()[k];
     const PoreSpace& space = spaces_[static_cast<std::size_t>(batch.material)];
     const double modulus = materials_[static_cast<std::size_t>(batch.material)].elasticity().constrained_modulus();
-    const double compliance = modulus > 0 ? 1 / modulus : 0;
+    const double compliance = modulus > 0 ? 1 / modulus : 0, kept = share_of_old_pressure(batch.material);
     for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
       wet_volume[p] = wet[p] != 0 ? volume[p] : 0;
       if (wet[p] == 0) continue;
@@ -312,6 +326,7 @@ double PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock
       cell.inverse_density += v * specific;
       cell.compliance += v * compliance;
       cell.storage += v * n * compressibility;
+      cell.kept += v * kept;
       if (space.liquid) continue;
       const auto k_over_weight = mobility(space, n);
       // mu = m_s m_w / rho, per volume

@@ -41,12 +41,15 @@ class PoreWater {
   ColumnId porosity() const { return porosity_; }
   ColumnId wet() const { return wet_; }
   bool any_liquid() const;
+  /// beta: share of the old pressure that acts before the new one is known. None in liquids: they have no drag from
+  /// which the split of the step could take something, and the old pressure of a surface that tears is noise.
+  double share_of_old_pressure(int material) const;
 
   /// Which blocks hold water.
   std::vector<char> wet_blocks(const Scene<Dim>& scene) const;
 
   /// Forces on the nodes from the total stress sigma' - beta p, from outside pressure and its gradient.
-  void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile, double increment,
+  void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
                       const ExternalPressure<Dim>& outside);
 
   /// Particles of a block to its cells and vertices: eq. (45). The nodes have the velocities of the predictor.
@@ -62,7 +65,7 @@ class PoreWater {
 
   /// The new pressure from the vertices, and the forces of what it adds to the old one.
   void correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
-               double increment, const PressureEquation<Dim>& equation);
+               const PressureEquation<Dim>& equation);
   /// Forces of the new pressure alone, to the force tile of `nodes`; after `correct`.
   void scatter_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                         const ExternalPressure<Dim>& outside, NodeFields<Dim>& nodes);

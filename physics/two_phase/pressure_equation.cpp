@@ -17,6 +17,9 @@ namespace {
 constexpr double least_fill = 0.05;
 /// The surface is not found nearer to a vertex than this, in cells: keeps the system well conditioned.
 constexpr double least_share = 0.05;
+/// The pressure is continued beyond the surface as if that were no nearer to a vertex than this, in cells. A steeper
+/// continuation would let a vertex at the surface move the particles outside more than its own equation knows.
+constexpr double least_continued_share = 0.5;
 /// Volume that may go astray in a cell in a step, as share of the cell.
 constexpr double volume_tolerance = 1e-9;
 constexpr std::size_t items_a_share = 256;
@@ -157,7 +160,7 @@ typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(cons
     const double lagged = (lightness - 0.4) * mobility - step.kick * specific;
     const double stabilisation = std::max({0.0, wanted - projection, lagged});
     cell.implicit[a] = projection + stabilisation;
-    cell.old[a] = step.increment * (projection - mobility) + stabilisation;
+    cell.old[a] = sums.kept * inverse * (projection - mobility) + stabilisation;
     cell.push[a] = sums.push[a] * inverse;
   }
   return cell;
@@ -244,13 +247,17 @@ typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Gr
   return row;
 }
 
-/// Where the fill passes one half between two vertices, linearly.
+/// Where the fill passes one half between two vertices, linearly: the share of the line that is inside.
+template <int Dim>
+double PressureEquation<Dim>::surface_share(std::size_t inside, std::size_t neighbour) const {
+  return std::clamp((fill_[inside] - 0.5) / (fill_[inside] - fill_[neighbour]), least_share, 1.0);
+}
+
 template <int Dim>
 typename PressureEquation<Dim>::Crossing PressureEquation<Dim>::crossing(std::size_t inside, std::size_t neighbour,
                                                                          const ExternalPressure<Dim>& outside,
                                                                          double time) const {
-  const double drop = fill_[inside] - fill_[neighbour];
-  const double share = std::clamp((fill_[inside] - 0.5) / drop, least_share, 1.0);
+  const double share = surface_share(inside, neighbour);
   if (!outside.any()) return {share, 0};
   const Vector<Dim> from = position(grid_.vertices()[inside].place), to = position(grid_.vertices()[neighbour].place);
   Vector<Dim> x;
@@ -279,15 +286,18 @@ double PressureEquation<Dim>::face_flux(const typename Grid::Vertex& vertex, dou
 }
 
 /// Eqs. (46) and (48). A line that leaves the water is continued to the vertex outside by the straight line through the
-/// surface (Gibou et al. 2002): it changes the diagonal only, so the matrix stays symmetric.
+/// surface (Gibou et al. 2002): it changes the diagonal only, so the matrix stays symmetric. Volume is balanced with
+/// the same continuation: what expands around the vertex outside counts with the share that the pressure inside has in
+/// the one there. So what a vertex balances is what it moves, and a step never feeds a motion that the next step wants
+/// undone.
 template <int Dim>
 void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside,
                                       double time) {
   const auto& vertex = grid_.vertices()[i];
   double diagonal = row.implicit[Grid::centre] + row.storage;
   double right = row.push - face_flux(vertex, time) + (row.old[Grid::centre] + row.storage) * old_[i];
-  // The particles fill the surroundings of the vertex in part only; the equation is that of the whole.
-  right -= lanes_[i][2] / fill_[i];
+  double expansion = lanes_[i][2];
+  bool at_surface = false;
   for (std::size_t n = 0; n < Grid::stencil; ++n) {
     if (n == Grid::centre || vertex.neighbour[n] < 0) continue;
     const auto j = static_cast<std::size_t>(vertex.neighbour[n]);
@@ -302,6 +312,8 @@ void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const Exter
       right += row.old[n] * old_[j] - row.implicit[n] * given_[j];
       continue;
     }
+    at_surface = true;
+    expansion += continuation(i, j, n) * lanes_[j][2];
     const Crossing c = crossing(i, j, outside, time);
     // With unequal permeabilities some couplings are positive; continuing those would take from the diagonal.
     const double share = row.implicit[n] < 0 ? c.share : 1;
@@ -309,7 +321,8 @@ void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const Exter
     right += row.old[n] * (old_[i] * (1 - 1 / share) + c.pressure / share) - row.implicit[n] * c.pressure / share;
   }
   values_[static_cast<std::size_t>(vertex.slot[Grid::centre])] = diagonal;
-  right_side_[i] = right;
+  // Inside, particles that lie unevenly fill the surroundings of the vertex to more or less than the whole.
+  right_side_[i] = right - (at_surface ? expansion : expansion / fill_[i]);
 }
 
 template <int Dim>
@@ -363,6 +376,7 @@ void PressureEquation<Dim>::solve(Scene<Dim>& scene, const ExternalPressure<Dim>
     sum_tiles();
     set_cells(step);
     classify(step);
+    weigh_lines();
     assemble(outside, step);
   }
   const auto timing = scene.clock.time(Stage::pressure_solve);
@@ -372,26 +386,52 @@ void PressureEquation<Dim>::solve(Scene<Dim>& scene, const ExternalPressure<Dim>
   extrapolate(outside, step.time);
 }
 
-/// Vertices outside continue the pressure through the surface, the mean over the lines that reach them: along axes
-/// where there are such, else across.
+namespace {
+
+/// Weight of the line to the place n of a stencil when lines meet: those along axes; where there are none, the others.
+template <int Dim>
+double line_weight(std::size_t n) {
+  int steps = 0;
+  for (int a = 0, rest = static_cast<int>(n); a < Dim; ++a, rest /= 3) steps += rest % 3 != 1 ? 1 : 0;
+  return steps == 1 ? 1 : 1e-9;
+}
+
+}  // namespace
+
+template <int Dim>
+void PressureEquation<Dim>::weigh_lines() {
+  line_weights_.resize(kind_.size());
+  parallel_shares(kind_.size(), [&](std::size_t j) {
+    double weight = 0;
+    for (std::size_t n = 0; n < Grid::stencil && kind_[j] == Kind::outside; ++n) {
+      const std::int32_t i = grid_.vertices()[j].neighbour[n];
+      if (i >= 0 && kind_[static_cast<std::size_t>(i)] == Kind::inside) weight += line_weight<Dim>(n);
+    }
+    line_weights_[j] = weight;
+  });
+}
+
+/// Share of the pressure of vertex i in that of vertex j outside, which lies at place n of its stencil.
+template <int Dim>
+double PressureEquation<Dim>::continuation(std::size_t i, std::size_t j, std::size_t n) const {
+  return line_weight<Dim>(n) / line_weights_[j] * (1 - 1 / std::max(surface_share(i, j), least_continued_share));
+}
+
+/// Vertices outside continue the pressure through the surface, the mean over the lines that reach them.
 template <int Dim>
 void PressureEquation<Dim>::extrapolate(const ExternalPressure<Dim>& outside, double time) {
   parallel_shares(kind_.size(), [&](std::size_t j) {
     if (kind_[j] != Kind::outside) return;
-    double sum = 0, weight = 0;
     const auto& vertex = grid_.vertices()[j];
+    double sum = 0;
     for (std::size_t n = 0; n < Grid::stencil; ++n) {
       if (vertex.neighbour[n] < 0) continue;
       const auto i = static_cast<std::size_t>(vertex.neighbour[n]);
       if (kind_[i] != Kind::inside) continue;
-      int steps = 0;
-      for (int a = 0, rest = static_cast<int>(n); a < Dim; ++a, rest /= 3) steps += rest % 3 != 1 ? 1 : 0;
-      const double own = steps == 1 ? 1 : 1e-9;
-      const Crossing c = crossing(i, j, outside, time);
-      sum += own * (pressure_[i] * (1 - 1 / c.share) + c.pressure / c.share);
-      weight += own;
+      const double share = continuation(i, j, n), weight = line_weight<Dim>(n) / line_weights_[j];
+      sum += share * pressure_[i] + (weight - share) * crossing(i, j, outside, time).pressure;
     }
-    pressure_[j] = weight > 0 ? sum / weight : outside.of_ponds(position(vertex.place), time);
+    pressure_[j] = line_weights_[j] > 0 ? sum : outside.of_ponds(position(vertex.place), time);
   });
 }
 

@@ -29,6 +29,7 @@ struct CellSums {
   double inverse_density = 0;          ///< of 1 / rho, rho that of soil with water
   double compliance = 0;               ///< of 1 / M, M the constrained modulus of the skeleton; 0 without one
   double storage = 0;                  ///< of n / K_w
+  double kept = 0;                     ///< of beta, the share of the old pressure that has acted already
   std::array<double, Dim> mobility{};  ///< of K = k / gamma_w and the like [m2/(Pa s)], along each axis
   std::array<double, Dim> push{};      ///< of K rho_w (b - a) and the like: what drives water but the pressure [m/s]
 
@@ -37,16 +38,16 @@ struct CellSums {
     inverse_density += other.inverse_density;
     compliance += other.compliance;
     storage += other.storage;
+    kept += other.kept;
     for (std::size_t a = 0; a < Dim; ++a) mobility[a] += other.mobility[a], push[a] += other.push[a];
   }
 };
 
 /// What the pressure has to do in a step.
 struct PressureStep {
-  double dt;         ///< time over which volume is balanced [s]
-  double kick;       ///< time over which the pressure accelerates [s]
-  double time;       ///< at the end of the step [s]
-  double increment;  ///< beta: share of the old pressure that has acted already
+  double dt;    ///< time over which volume is balanced [s]
+  double kick;  ///< time over which the pressure accelerates [s]
+  double time;  ///< at the end of the step [s]
   bool stabilised;
 };
 
@@ -114,9 +115,12 @@ class PressureEquation {
   void assemble(const ExternalPressure<Dim>& outside, const PressureStep& step);
   Row row(const typename Grid::Vertex& vertex) const;
   void write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside, double time);
+  double surface_share(std::size_t inside, std::size_t neighbour) const;
   Crossing crossing(std::size_t inside, std::size_t neighbour, const ExternalPressure<Dim>& outside, double time) const;
   double face_flux(const typename Grid::Vertex& vertex, double time) const;
   Vector<Dim> position(const Index<Dim>& place) const;
+  void weigh_lines();
+  double continuation(std::size_t i, std::size_t j, std::size_t n) const;
   void extrapolate(const ExternalPressure<Dim>& outside, double time);
   void solve_system(double dt);
   [[noreturn]] void explain(const NotPositiveDefinite& error) const;
@@ -140,6 +144,7 @@ class PressureEquation {
   std::vector<double> fill_;            // by vertex: share of its surroundings that is wet
   std::vector<Kind> kind_;              // by vertex
   std::vector<double> given_;           // by vertex [Pa]
+  std::vector<double> line_weights_;    // by vertex outside: of all lines from vertices inside
   std::vector<double> old_, pressure_;  // by vertex [Pa]
   std::vector<double> values_, right_side_;
   LaggedCholesky::Report report_;

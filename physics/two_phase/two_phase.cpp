@@ -132,7 +132,7 @@ void TwoPhase<Dim>::step_explicit(Scene<Dim>& scene, double dt) {
 template <int Dim>
 void TwoPhase<Dim>::predict(Scene<Dim>& scene, double kick) {
   const auto forces = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
-    pores_.scatter_forces(scene, b, block, work.motion_tile.data(), water_.increment, outside_);
+    pores_.scatter_forces(scene, b, block, work.motion_tile.data(), outside_);
   };
   scatter(scene, ScatterWhat::momentum);
   const bool stress_first = stress_.timing() == StressTiming::usf;
@@ -161,7 +161,7 @@ void TwoPhase<Dim>::project(Scene<Dim>& scene, double dt, double kick) {
     });
     dissipated_ += kick * std::accumulate(power_.begin(), power_.end(), 0.0);
   }
-  pressure_.solve(scene, outside_, {dt, kick, scene.time + dt, water_.increment, water_.stabilisation});
+  pressure_.solve(scene, outside_, {dt, kick, scene.time + dt, water_.stabilisation});
 }
 
 /// The nodes take up the new pressure, eq. (49).
@@ -172,7 +172,7 @@ void TwoPhase<Dim>::correct(Scene<Dim>& scene, double kick) {
   {
     const auto timing = scene.clock.time(Stage::scatter);
     for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
-      pores_.correct(scene, b, block, work, water_.increment, pressure_);
+      pores_.correct(scene, b, block, work, pressure_);
       if (friction) pores_.scatter_pressure(scene, b, block, outside_, wall_);
     });
   }

@@ -125,6 +125,42 @@ TEST(Observation, MotionOfAllMaterial) {
   EXPECT_DOUBLE_EQ(value(observe("center_of_mass", {1, 0}), particles), 0.5);
 }
 
+TEST(Observation, MeanAndLargestOfAField) {
+  Particles particles = row_of_particles(4);  // of equal volume
+  double* vy = particles.columns.data(particles.velocity, 1);
+  for (int i = 0; i < 4; ++i) vy[i] = 10 * i;
+  particles.columns.data(particles.volume)[1] *= 3;
+  ObservationCase rise = observe("mean", {0, 1});
+  rise.field = "velocity";
+  rise.region = Region{{Box{{0, 0}, {1, 1}}}};  // particles 0 and 1
+  EXPECT_DOUBLE_EQ(value(rise, particles), 7.5);
+  rise.measure = "largest";
+  EXPECT_DOUBLE_EQ(value(rise, particles), 10);
+  rise.region.reset();
+  EXPECT_DOUBLE_EQ(value(rise, particles), 30);
+  rise.direction = {0, -1};
+  EXPECT_DOUBLE_EQ(value(rise, particles), 0);
+  ObservationCase mass = observe("largest");
+  mass.field = "mass";
+  particles.columns.data(particles.mass)[2] = 7;
+  EXPECT_DOUBLE_EQ(value(mass, particles), 7);
+  EXPECT_EQ(make_observation(mass, particles, std::vector<double>{1, 1})->unit(), "kg");
+}
+
+TEST(Observation, FieldsThatAreMissingAreNamed) {
+  const Particles particles = row_of_particles(2);
+  ObservationCase mean = observe("mean");
+  EXPECT_NE(error(mean, particles).find("needs a field"), std::string::npos);
+  mean.field = "pore_presure";
+  EXPECT_NE(error(mean, particles).find("finds no field 'pore_presure'; there are"), std::string::npos);
+  mean.field = "velocity";
+  EXPECT_NE(error(mean, particles).find("needs a direction"), std::string::npos);
+  mean.field = "stress";
+  EXPECT_NE(error(mean, particles).find("is a tensor"), std::string::npos);
+  mean.measure = "kinetic_energy";
+  EXPECT_NE(error(mean, particles).find("takes no field"), std::string::npos);
+}
+
 TEST(Observation, WhatIsMissingOrTooMuchIsNamed) {
   const Particles particles = row_of_particles(3);
   EXPECT_EQ(error(observe("front"), particles),
