@@ -1,5 +1,7 @@
 #include "core/case/resolved_case.h"
 
+#include <algorithm>
+
 #include "core/case/case_schema.h"
 #include "core/case/registry.h"
 
@@ -7,7 +9,8 @@ namespace sluice {
 
 namespace {
 
-/// Adds the defaults of the material's model, as its catalogue entry declares them.
+/// Adds the defaults of the material's model, as its catalogue entry declares them; keys of the physics go last, so
+/// that a resolved case is resolved to itself.
 void fill_in(Node& material) {
   const auto catalogue = Catalogue::all().find("materials");
   const Node* const model = material.find("model");
@@ -16,6 +19,15 @@ void fill_in(Node& material) {
   if (entry == catalogue->second->entries().end() || !entry->second.keys) return;
   for (const FieldDoc& doc : entry->second.keys())
     if (doc.default_value && material.find(doc.name) == nullptr) material.set(doc.name, doc.default_value);
+  Node own = Node::map(), other = Node::map();
+  for (std::size_t i = 0; i < material.items.size(); ++i) {
+    const std::string& key = material.keys[i].first;
+    const bool of_model = key == "model" || std::ranges::any_of(entry->second.keys(),
+                                                                [&](const FieldDoc& doc) { return doc.name == key; });
+    (of_model ? own : other).set(key, material.items[i]);
+  }
+  for (std::size_t i = 0; i < other.items.size(); ++i) own.set(other.keys[i].first, other.items[i]);
+  material = std::move(own);
 }
 
 }  // namespace

@@ -61,6 +61,7 @@ std::vector<SurfaceLoad> read_surface_loads(const Node& section, int dimension) 
 }
 
 Node resolved_surface_loads(const std::vector<SurfaceLoad>& loads) {
+  if (loads.empty()) return {};
   Node list = Node::list();
   for (const SurfaceLoad& load : loads) list.items.push_back(surface_load_schema().write(load));
   return list;

@@ -193,8 +193,11 @@ void PoreWater<Dim>::take_pressure(Scene<Dim>& scene, std::size_t b, const Parti
     // Free water tears rather than be pulled; the continuation beyond a ragged surface would pull.
     const bool liquid = spaces_[static_cast<std::size_t>(batch.material)].liquid;
     const double least = liquid ? 0 : -infinity;
-    for (std::uint32_t p = batch.begin; p < batch.end; ++p)
-      pressure[p] = wet[p] != 0 ? std::max(pressure[p], least) : 0;
+    for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
+      if (wet[p] != 0 && pressure[p] >= least) continue;
+      pressure[p] = 0;
+      for (int a = 0; a < Dim; ++a) out.gradient[a][p] = 0;
+    }
   }
 }
 

@@ -20,8 +20,6 @@ TEST(Islands, FallFreely) {
     const double dt = simulation->time_step_limits().front().second;
     for (const double one : v) EXPECT_NEAR(one, -9.81 * 0.3, 9.81 * dt) << material;
     EXPECT_LT(largest_magnitude(p), 1) << material;  // [Pa]; at rest it would be 1e4
-    fmt::print("{}: pressure {:.3g}, unknowns {}, iterations {}\n", material, largest_magnitude(p),
-               step_number(*simulation, "pressure_unknowns"), total(*simulation, "pressure_iterations"));
   }
 }
 
@@ -39,8 +37,7 @@ TEST(Islands, OfOneAndTwoParticlesFlyStraight) {
     const double before = total_momentum(simulation->particles(), 0);
     while (simulation->time() < 1.5) simulation->advance(1.5);
     EXPECT_NEAR(total_momentum(simulation->particles(), 0), before, 1e-10 * before) << material;
-    const auto v = by_id(simulation->particles(), "velocity", 0), x = by_id(simulation->particles(), "position", 0);
-    fmt::print("{}: {} {} {} at {} {} {}\n", material, v[0], v[1], v[2], x[0], x[1], x[2]);
+    const auto v = by_id(simulation->particles(), "velocity", 0);
     for (std::size_t p = 0; p < 3; ++p) EXPECT_NEAR(v[p], 3, 1e-3) << material;
   }
 }
@@ -64,7 +61,8 @@ TEST(Islands, OfDrySoilHaveNoPressure) {
     }
 }
 
-// A scene of two_phase without water is one of total_stress, to the last bit.
+// A scene of two_phase without water is one of total_stress. Tolerance: with APIC total_stress adds the impulse to the
+// momentum at once, two_phase for itself; the difference in round-off grows while the soil yields, to 2e-11 m.
 TEST(Islands, WithoutWaterAreThoseOfTotalStress) {
   for (const char* const timing : {"usf", "usl", "musl"})
     for (const char* const transfer : {"apic", "flip"}) {
@@ -80,11 +78,10 @@ TEST(Islands, WithoutWaterAreThoseOfTotalStress) {
       const auto two = simulate_text(scene + "physics: two_phase\n");
       take_steps(*single, 200);
       take_steps(*two, 200);
-      EXPECT_EQ(single->time(), two->time()) << timing << transfer;
+      EXPECT_NEAR(single->time(), two->time(), 1e-12) << timing << transfer;
       double worst = 0;
       const auto a = by_id(single->particles(), "position", 0), b = by_id(two->particles(), "position", 0);
       for (std::size_t p = 0; p < a.size(); ++p) worst = std::max(worst, std::abs(a[p] - b[p]));
-      fmt::print("{} {}: {:.3g}, unknowns {}\n", timing, transfer, worst, step_number(*two, "pressure_unknowns"));
       EXPECT_LT(worst, 1e-9) << timing << transfer;
       EXPECT_EQ(step_number(*two, "pressure_unknowns"), 0);
     }
@@ -104,8 +101,7 @@ TEST(Islands, OfWaterKeepTheirShapeAndMomentum) {
   double worst = 0;
   for (std::size_t p = 0; p < x.size(); ++p)
     worst = std::max({worst, std::abs(x[p] - x0[p] - 4), std::abs(z[p] - z0[p] - 0.6)});
-  fmt::print("drop: shape changed by {:.3g} m, {} steps\n", worst, simulation->steps());
-  EXPECT_LT(worst, 1e-6);
+  EXPECT_LT(worst, 1e-12);
 }
 
 }  // namespace
