@@ -94,12 +94,6 @@ void PoreWater<Dim>::set_initial_pressure(Scene<Dim>& scene) {
 }
 
 template <int Dim>
-double PoreWater<Dim>::share_of_old_pressure(int material) const {
-  const bool liquid = spaces_[static_cast<std::size_t>(material)].liquid;
-  return liquid && water_.formulation != Formulation::explicit_ ? 0 : water_.increment;
-}
-
-template <int Dim>
 bool PoreWater<Dim>::any_liquid() const {
   return std::any_of(spaces_.begin(), spaces_.end(), [](const PoreSpace& space) { return space.liquid; });
 }
@@ -154,11 +148,7 @@ void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const Part
   for (int a = 0; a < Dim; ++a) {
     const double* effective = in.stress[a];
     double* total = columns.data(total_stress_, a);
-    for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
-      const Batch& batch = scene.blocks.batches()[k];
-      const double kept = share_of_old_pressure(batch.material);
-      for (std::uint32_t p = batch.begin; p < batch.end; ++p) total[p] = effective[p] - kept * pressure[p];
-    }
+    for (std::uint32_t p = block.begin; p < block.end; ++p) total[p] = effective[p] - water_.increment * pressure[p];
     in.stress[a] = total;
   }
   if (outside.any()) {
@@ -213,13 +203,9 @@ void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlo
   const double* added = columns.data(new_pressure_);
   double* pressure = columns.data(pressure_);
   double* stress = columns.data(total_stress_);
-  for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
-    const Batch& batch = scene.blocks.batches()[k];
-    const double kept = share_of_old_pressure(batch.material);
-    for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
-      stress[p] = kept * pressure[p] - added[p];
-      pressure[p] = added[p];
-    }
+  for (std::uint32_t p = block.begin; p < block.end; ++p) {
+    stress[p] = water_.increment * pressure[p] - added[p];
+    pressure[p] = added[p];
   }
   ScatterInput<Dim> in = scene.scatter_input(block);
   in.stress.fill(columns.data(zero_));
@@ -317,7 +303,7 @@ double PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock
     const Batch& batch = scene.blocks.batches()[k];
     const PoreSpace& space = spaces_[static_cast<std::size_t>(batch.material)];
     const double modulus = materials_[static_cast<std::size_t>(batch.material)].elasticity().constrained_modulus();
-    const double compliance = modulus > 0 ? 1 / modulus : 0, kept = share_of_old_pressure(batch.material);
+    const double compliance = modulus > 0 ? 1 / modulus : 0;
     for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
       wet_volume[p] = wet[p] != 0 ? volume[p] : 0;
       if (wet[p] == 0) continue;
@@ -329,7 +315,6 @@ double PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock
       cell.inverse_density += v * specific;
       cell.compliance += v * compliance;
       cell.storage += v * n * compressibility;
-      cell.kept += v * kept;
       if (space.liquid) continue;
       const auto k_over_weight = mobility(space, n);
       // mu = m_s m_w / rho, per volume

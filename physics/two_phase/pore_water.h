@@ -41,9 +41,6 @@ class PoreWater {
   ColumnId porosity() const { return porosity_; }
   ColumnId wet() const { return wet_; }
   bool any_liquid() const;
-  /// beta: share of the old pressure that acts before the new one is known. None in liquids: they have no drag from
-  /// which the split of the step could take something, and the old pressure of a surface that tears is noise.
-  double share_of_old_pressure(int material) const;
 
   /// Which blocks hold water.
   std::vector<char> wet_blocks(const Scene<Dim>& scene) const;

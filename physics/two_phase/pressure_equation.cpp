@@ -17,9 +17,6 @@ namespace {
 constexpr double least_fill = 0.05;
 /// The surface is not found nearer to a vertex than this, in cells: keeps the system well conditioned.
 constexpr double least_share = 0.05;
-/// The pressure is continued beyond the surface as if that were no nearer to a vertex than this, in cells. A steeper
-/// continuation would let a vertex at the surface move the particles outside more than its own equation knows.
-constexpr double least_continued_share = 0.5;
 /// Volume that may go astray in a cell in a step, as share of the cell.
 constexpr double volume_tolerance = 1e-9;
 constexpr std::size_t items_a_share = 256;
@@ -160,7 +157,7 @@ typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(cons
     const double lagged = (lightness - 0.4) * mobility - step.kick * specific;
     const double stabilisation = std::max({0.0, wanted - projection, lagged});
     cell.implicit[a] = projection + stabilisation;
-    cell.old[a] = sums.kept * inverse * (projection - mobility) + stabilisation;
+    cell.old[a] = water_.increment * (projection - mobility) + stabilisation;
     cell.push[a] = sums.push[a] * inverse;
   }
   return cell;
@@ -414,7 +411,7 @@ void PressureEquation<Dim>::weigh_lines() {
 /// Share of the pressure of vertex i in that of vertex j outside, which lies at place n of its stencil.
 template <int Dim>
 double PressureEquation<Dim>::continuation(std::size_t i, std::size_t j, std::size_t n) const {
-  return line_weight<Dim>(n) / line_weights_[j] * (1 - 1 / std::max(surface_share(i, j), least_continued_share));
+  return line_weight<Dim>(n) / line_weights_[j] * (1 - 1 / surface_share(i, j));
 }
 
 /// Vertices outside continue the pressure through the surface, the mean over the lines that reach them.

@@ -29,7 +29,6 @@ struct CellSums {
   double inverse_density = 0;          ///< of 1 / rho, rho that of soil with water
   double compliance = 0;               ///< of 1 / M, M the constrained modulus of the skeleton; 0 without one
   double storage = 0;                  ///< of n / K_w
-  double kept = 0;                     ///< of beta, the share of the old pressure that has acted already
   std::array<double, Dim> mobility{};  ///< of K = k / gamma_w and the like [m2/(Pa s)], along each axis
   std::array<double, Dim> push{};      ///< of K rho_w (b - a) and the like: what drives water but the pressure [m/s]
 
@@ -38,7 +37,6 @@ struct CellSums {
     inverse_density += other.inverse_density;
     compliance += other.compliance;
     storage += other.storage;
-    kept += other.kept;
     for (std::size_t a = 0; a < Dim; ++a) mobility[a] += other.mobility[a], push[a] += other.push[a];
   }
 };

@@ -145,7 +145,7 @@ const Schema<WaterCase>& schema() {
           .quantity("saturation", &W::saturation, unit::none, above_to(0, 1),
                     "Degree of saturation; below 1, air softens the water: 1/K = S/K_w + (1 - S)/101325 Pa.", 1.0)
           .quantity("increment", &W::increment, unit::none, from_to(0, 1),
-                    "Share of the old pressure in the predictor, in soil: 1 solves for increments of the pressure, 0 "
+                    "Share of the old pressure in the predictor: 1 solves for increments of the pressure, 0 "
                     "for the whole.",
                     1.0)
           .boolean("stabilisation", &W::stabilisation,

@@ -129,7 +129,8 @@ TEST(Observation, MeanAndLargestOfAField) {
   Particles particles = row_of_particles(4);  // of equal volume
   double* vy = particles.columns.data(particles.velocity, 1);
   for (int i = 0; i < 4; ++i) vy[i] = 10 * i;
-  particles.columns.data(particles.volume)[1] *= 3;
+  std::ranges::fill(particles.columns.values(particles.volume), 1.0);
+  particles.columns.data(particles.volume)[1] = 3;
   ObservationCase rise = observe("mean", {0, 1});
   rise.field = "velocity";
   rise.region = Region{{Box{{0, 0}, {1, 1}}}};  // particles 0 and 1
@@ -144,7 +145,7 @@ TEST(Observation, MeanAndLargestOfAField) {
   mass.field = "mass";
   particles.columns.data(particles.mass)[2] = 7;
   EXPECT_DOUBLE_EQ(value(mass, particles), 7);
-  EXPECT_EQ(make_observation(mass, particles, std::vector<double>{1, 1})->unit(), "kg");
+  EXPECT_EQ(make_observation(mass, particles, std::vector<double>{1, 1})->unit(), "kg/m");  // per metre of thickness
 }
 
 TEST(Observation, FieldsThatAreMissingAreNamed) {
