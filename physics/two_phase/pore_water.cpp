@@ -238,8 +238,10 @@ std::array<double, Dim> PoreWater<Dim>::mobility(const PoreSpace& space, double 
   if (space.liquid) return mobility;
   const auto kozeny = [](double n) { return n * n * n / ((1 - n) * (1 - n)); };
   const double factor = space.kozeny_carman ? kozeny(porosity) / kozeny(space.porosity) : 1;
+  // Soil that falls apart has a porosity near one and a permeability without bound: u-p holds up to a limit only.
+  const double coarsest = water_.formulation == Formulation::u_p ? coarsest_u_p : infinity;
   for (std::size_t a = 0; a < Dim; ++a)
-    mobility[a] = factor * space.permeability[a] / (water_.density * standard_gravity);
+    mobility[a] = std::min(factor * space.permeability[a], coarsest) / (water_.density * standard_gravity);
   return mobility;
 }
 

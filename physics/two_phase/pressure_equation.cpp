@@ -17,6 +17,9 @@ namespace {
 constexpr double least_fill = 0.05;
 /// The surface is not found nearer to a vertex than this, in cells: keeps the system well conditioned.
 constexpr double least_share = 0.05;
+/// The pressure is continued beyond the surface as if that were no nearer to a vertex than this, in cells. A steeper
+/// continuation would let a vertex at the surface move the particles outside more than its own equation knows.
+constexpr double least_continued_share = 0.25;
 /// Volume that may go astray in a cell in a step, as share of the cell.
 constexpr double volume_tolerance = 1e-9;
 constexpr std::size_t items_a_share = 256;
@@ -411,7 +414,7 @@ void PressureEquation<Dim>::weigh_lines() {
 /// Share of the pressure of vertex i in that of vertex j outside, which lies at place n of its stencil.
 template <int Dim>
 double PressureEquation<Dim>::continuation(std::size_t i, std::size_t j, std::size_t n) const {
-  return line_weight<Dim>(n) / line_weights_[j] * (1 - 1 / surface_share(i, j));
+  return line_weight<Dim>(n) / line_weights_[j] * (1 - 1 / std::max(surface_share(i, j), least_continued_share));
 }
 
 /// Vertices outside continue the pressure through the surface, the mean over the lines that reach them.

@@ -11,9 +11,6 @@ namespace sluice {
 namespace {
 
 constexpr double atmospheric_pressure = 101325;  // [Pa]
-/// Permeability [m/s] up to which u-p is meant to hold: at 5 Hz its error is beyond ten per cent from 1.6e-2 m/s on,
-/// and in soil ten times coarser than this limit its explicit acceleration makes long steps unstable.
-constexpr double coarsest_u_p = 0.1;
 
 const Schema<WaterFace>& face_schema() {
   static const auto schema =
