@@ -7,15 +7,23 @@
 namespace sluice {
 
 namespace {
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
-}
+
+/// What the permeability goes with.
+double kozeny_carman(double n) { return n * n * n / ((1 - n) * (1 - n)); }
+
+}  // namespace
 
 template <int Dim>
 PoreWater<Dim>::PoreWater(const WaterCase& water, std::vector<PoreSpace> spaces, const Materials<Dim>& materials)
     : water_(water),
       spaces_(std::move(spaces)),
       materials_(materials),
-      linear_(shape_registry<Dim>().find("linear", {})()) {}
+      linear_(shape_registry<Dim>().find("linear", {})()) {
+  for (PoreSpace& space : spaces_)
+    if (!space.liquid && space.saturated) space.per_initial_kozeny_carman = 1 / kozeny_carman(space.porosity);
+}
 
 template <int Dim>
 void PoreWater<Dim>::declare(Particles& particles, bool with_body_force) {
@@ -236,8 +244,7 @@ template <int Dim>
 std::array<double, Dim> PoreWater<Dim>::mobility(const PoreSpace& space, double porosity) const {
   std::array<double, Dim> mobility{};
   if (space.liquid) return mobility;
-  const auto kozeny = [](double n) { return n * n * n / ((1 - n) * (1 - n)); };
-  const double factor = space.kozeny_carman ? kozeny(porosity) / kozeny(space.porosity) : 1;
+  const double factor = space.kozeny_carman ? kozeny_carman(porosity) * space.per_initial_kozeny_carman : 1;
   // Soil that falls apart has a porosity near one and a permeability without bound: u-p holds up to a limit only.
   const double coarsest = water_.formulation == Formulation::u_p ? coarsest_u_p : infinity;
   for (std::size_t a = 0; a < Dim; ++a)
@@ -300,7 +307,7 @@ double PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock
   for (int a = 0; a < Dim; ++a) slope[a] = columns.data(pressure_gradient_, a);
   double dissipated = 0;
   const double compressibility = water_.compressibility();
-  const double own = relative[0] != nullptr ? 1 : 0;  // inertia of the water's own
+  const double per_kick = 1 / kick;
   for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
     const Batch& batch = scene.blocks.batches()[k];
     const PoreSpace& space = spaces_[static_cast<std::size_t>(batch.material)];
@@ -319,16 +326,26 @@ double PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock
       cell.storage += v * n * compressibility;
       if (space.liquid) continue;
       const auto k_over_weight = mobility(space, n);
-      // mu = m_s m_w / rho, per volume
-      const double reduced = own * n * water_.density * (1 - n * water_.density * specific);
+      if (relative[0] == nullptr) {
+        for (std::size_t a = 0; a < Dim; ++a) {
+          const double mobile = v * k_over_weight[a];
+          const double drive = water_.density * (scene.gravity[a] - change[a][p] * per_kick),
+                       excess = drive - slope[a][p];
+          cell.mobility[a] += mobile;
+          cell.push[a] += mobile * drive;
+          dissipated += mobile * excess * excess;
+        }
+        continue;
+      }
+      // mu / (n^2 dt), mu = m_s m_w / rho per volume
+      const double inertial = water_.density / n * (1 - n * lightness) * per_kick;
       for (std::size_t a = 0; a < Dim; ++a) {
-        const double resistance = 1 / k_over_weight[a], inertial = reduced / (n * n * kick);
-        const double share = 1 - own * lightness;  // of the relative velocity that counts beside that of the mixture
-        const double mobile = share / (resistance + inertial);
-        cell.mobility[a] += v * mobile;
-        const double drive = water_.density * (scene.gravity[a] - change[a][p] / kick);
-        cell.push[a] += v * mobile * (drive + (own != 0 ? inertial * n * relative[a][p] : 0));
-        const double flux = own != 0 ? n * relative[a][p] : k_over_weight[a] * (drive - slope[a][p]);
+        const double resistance = 1 / k_over_weight[a], flux = n * relative[a][p];
+        // 1 - rho_w / rho is the share of the relative velocity that counts beside that of the mixture.
+        const double mobile = v * (1 - lightness) / (resistance + inertial);
+        const double drive = water_.density * (scene.gravity[a] - change[a][p] * per_kick);
+        cell.mobility[a] += mobile;
+        cell.push[a] += mobile * (drive + inertial * flux);
         dissipated += v * flux * flux * resistance;
       }
     }

@@ -226,6 +226,21 @@ void PressureEquation<Dim>::classify(const PressureStep& step) {
 
 // ---- the system ----
 
+namespace {
+
+/// [m][n]: the place in the stencil of corner m of a cell at which corner n lies.
+template <int Dim>
+constexpr auto neighbour_places = [] {
+  constexpr std::size_t corners = power(2, Dim);
+  std::array<std::array<std::size_t, corners>, corners> places{};
+  for (std::size_t m = 0; m < corners; ++m)
+    for (std::size_t n = 0; n < corners; ++n)
+      for (int a = Dim - 1; a >= 0; --a) places[m][n] = 3 * places[m][n] + 1 + (n >> a & 1) - (m >> a & 1);
+  return places;
+}();
+
+}  // namespace
+
 template <int Dim>
 typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Grid::Vertex& vertex) const {
   Row row;
@@ -236,8 +251,7 @@ typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Gr
     row.storage += cell.storage * geometry_.cell_volume() / Grid::corners;
     for (std::size_t a = 0; a < Dim; ++a) row.push += integrals_.slope[a][m] * cell.push[a];
     for (std::size_t n = 0; n < Grid::corners; ++n) {
-      std::size_t place = 0;
-      for (int a = Dim - 1; a >= 0; --a) place = 3 * place + 1 + (n >> a & 1) - (m >> a & 1);
+      const std::size_t place = neighbour_places<Dim>[m][n];
       for (std::size_t a = 0; a < Dim; ++a) {
         row.implicit[place] += cell.implicit[a] * integrals_.laplacian[a][m][n];
         row.old[place] += cell.old[a] * integrals_.laplacian[a][m][n];

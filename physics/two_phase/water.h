@@ -68,8 +68,9 @@ struct PoreSpace {
   std::vector<double> permeability;  ///< hydraulic conductivity [m/s], one for all axes or one for each
   bool kozeny_carman = true;         ///< the permeability follows the porosity
 
-  bool saturated = false;  ///< holds water
-  bool liquid = false;     ///< is water
+  double per_initial_kozeny_carman = 1;  ///< 1 / (n^3 / (1 - n)^2) at the start
+  bool saturated = false;                ///< holds water
+  bool liquid = false;                   ///< is water
 };
 
 /// Throws CaseError.
