@@ -52,7 +52,7 @@ class PressureGrid {
   const std::int32_t* cells_of_tile(std::size_t block) const { return tile_cells_.data() + block * cell_tile; }
   const std::int32_t* vertices_of_tile(std::size_t block) const { return tile_vertices_.data() + block * vertex_tile; }
 
-  SymmetricPattern pattern() const { return pattern_; }
+  const SymmetricPattern& pattern() const { return pattern_; }
   std::vector<std::array<int, Dim>> places() const;
 
  private:

@@ -41,7 +41,7 @@ class Seepage {
     if (std::ranges::count(kind_, Kind::given) == 0)
       throw CaseError("water.initial: steady_seepage needs a pressure or head on a face, or a pond");
     start();
-    const auto pattern = grid_.pattern();
+    const SymmetricPattern& pattern = grid_.pattern();
     SparseCholesky cholesky({.ordering = Ordering::nested_dissection});
     Eigen::SparseMatrix<double> matrix = empty(pattern);
     for (int n = 1; n <= most_iterations; ++n) {
