@@ -5,13 +5,14 @@
                                     [--times 0 10 20 50] [--animation]
 
 Reads RESULTS_DIR/results.h5 (of a finished run, or of one under way), history.csv and observations.csv; writes
-RESULTS_DIR/pictures/FIELD.png (one row a time), history.png, observations.png and FIELD.gif.
+RESULTS_DIR/pictures/FIELD.png (one panel a time), history.png, observations.png and FIELD.gif.
 Needs python3-h5py, python3-numpy, python3-matplotlib and python3-pil. Made to be adapted: the layout of results.h5 is
 read in `Results`, a field is turned into an image in `rasterise`, and each figure is drawn by one function.
 """
 import argparse
 import csv
 import sys
+import textwrap
 from pathlib import Path
 
 import h5py
@@ -62,15 +63,27 @@ class Results:
     def values(self, name, frame):
         """(N,): of a vector its length, of a stress the mean."""
         values = self.fields[name][self.rows(frame)]
-        if values.ndim == 1:
-            return values
-        return np.linalg.norm(values, axis=1) if values.shape[1] == 3 else values[:, :3].mean(axis=1)
+        if values.ndim == 2:
+            values = np.linalg.norm(values, axis=1) if values.shape[1] == 3 else values[:, :3].mean(axis=1)
+        return values / 1000 if self.unit(name) == "kPa" else values
+
+    def unit(self, name):
+        """Of `values`: SI, but kPa for stresses and pressures."""
+        unit = text(self.fields[name].attrs["unit"])
+        return "kPa" if unit == "Pa" else unit
+
+    def dry(self, frame):
+        """Which particles hold no water, where some do and some do not; else None."""
+        if "wet" not in self.fields:
+            return None
+        dry = self.fields["wet"][self.rows(frame)] == 0
+        return dry if dry.any() and not dry.all() else None
 
     def label(self, name):
         words = name.replace("_", " ")
         if self.fields[name].ndim == 2:
             words = f"{words}, {'magnitude' if self.fields[name].shape[1] == 3 else 'mean of xx, yy, zz'}"
-        unit = text(self.fields[name].attrs["unit"])
+        unit = self.unit(name)
         return words if unit == "1" else f"{words} [{unit}]"
 
     def require(self, names):
@@ -177,11 +190,15 @@ class Scale:
         values = values[np.isfinite(values)]
         # A few extreme particles do not decide the scale; where most of a field is zero, a thin zone of large values neither.
         low, high = np.percentile(values, [0.5, 99.5]) if values.size else (0, 1)
-        if 0 <= low < 0.2 * high:
+        if name == "pore_pressure":
+            # The whole range, from zero unless there is suction worth a colour.
+            low, high = (0 if low > -0.02 * high else low), np.percentile(values, 99.9)
+        elif 0 <= low < 0.2 * high:
             low, high = 0, np.percentile(values, 97)
         self.norm = Normalize(low, high if high > low else low + 1)
         self.extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[
-            (int(values.size and values.min() < low), int(values.size and values.max() > high))
+            (int(values.size and values.min() < low - 0.02 * (high - low)),
+             int(values.size and values.max() > high + 0.02 * (high - low)))
         ]
 
     def patches(self):
@@ -190,11 +207,13 @@ class Scale:
     def explain(self, figure, axes):
         """The legend of materials, or the colour bar."""
         if self.category:
-            axes[0].legend(handles=self.patches(), loc="lower center", bbox_to_anchor=(0.5, 1.0),
-                           ncol=min(5, len(self.materials)), frameon=False)
+            columns = min(4, len(self.materials), max(1, int(figure.get_figwidth() / 1.7)))
+            share = (0.1 + 0.2 * -(-len(self.materials) // columns)) / figure.get_figheight()
+            figure.get_layout_engine().set(rect=(0, share, 1, 1 - share))
+            figure.legend(handles=self.patches(), loc="lower center", ncol=columns, frameon=False)
         else:
             mappable = plt.cm.ScalarMappable(self.norm, self.map)
-            figure.colorbar(mappable, ax=list(axes), label=self.label, extend=self.extend, shrink=0.9,
+            figure.colorbar(mappable, ax=list(axes), label=self.label, extend=self.extend, extendfrac=0.02, shrink=0.9,
                             aspect=30, pad=0.01)
 
 
@@ -211,27 +230,60 @@ def shown(results, view, name, frame):
     return rasterise(view, results.positions(frame), results.values(name, frame), name == "material")
 
 
+def draw_dry(results, axes, view, frame):
+    """Grey over soil that holds no water, and the line that bounds it, in pictures of the pore pressure."""
+    dry = results.dry(frame)
+    if dry is None:
+        return
+    share = rasterise(view, results.positions(frame), dry.astype(float))
+    axes.imshow(np.ma.masked_where(~(share > 0.5), share), extent=view.extent, origin="lower", cmap=ListedColormap(["0.85"]),
+                interpolation="nearest")
+    x = view.low[0] + (np.arange(view.shape[0]) + 0.5) * view.pixel[0]
+    y = view.low[1] + (np.arange(view.shape[1]) + 0.5) * view.pixel[1]
+    axes.contour(x, y, share, levels=[0.5], colors="#2255aa", linewidths=1.0)
+
+
+def layout_of(view, count, bar=0.9, spare=0.35):
+    """Rows, columns and size in inches of `count` panels and a bar beside them, on a page 7.5 wide at most 9 high."""
+    aspect = (view.high[1] - view.low[1]) / (view.high[0] - view.low[0])
+    best = None
+    for columns in range(1, count + 1):
+        rows = -(-count // columns)
+        width = (7.5 - bar - 0.5) / columns
+        width = min(width, ((9 - 0.8) / rows - spare) / aspect)  # tall panels become narrower
+        empty = rows * columns - count
+        size = width * width * aspect / (1 + 0.2 * empty)
+        if best is None or size > 1.15 * best[0]:
+            best = size, rows, columns, max(3.5, columns * width + bar + 0.5), rows * (width * aspect + spare) + 0.8
+    return best[1:]
+
+
 def draw_field(results, view, name, frames, path):
-    """One row a time, with the same colours in all rows."""
+    """One panel a time, with the same colours in all panels."""
     scale = Scale(results, name, frames)
-    width = 7.5
-    row = width * (0.9 if scale.category else 0.8) * (view.high[1] - view.low[1]) / (view.high[0] - view.low[0])
-    figure, axes = plt.subplots(len(frames), 1, figsize=(width, len(frames) * (row + 0.25) + 0.8), sharex=True,
-                                squeeze=False, layout="constrained")
-    axes = axes[:, 0]
+    rows, columns, width, height = layout_of(view, len(frames), 0 if scale.category else 0.9)
+    figure, panels = plt.subplots(rows, columns, figsize=(width, height), sharex=True, sharey=True, squeeze=False,
+                                  layout="constrained")
+    axes = panels.ravel()[: len(frames)]
+    for empty in panels.ravel()[len(frames) :]:
+        empty.set_visible(False)
     start = rasterise(view, results.initial_positions(0), results.values("mass", 0))
     for axis, frame in zip(axes, frames):
         image = np.ma.masked_invalid(shown(results, view, name, frame))
         axis.imshow(image, extent=view.extent, origin="lower", cmap=scale.map, norm=scale.norm, interpolation="nearest")
+        if name == "pore_pressure":
+            draw_dry(results, axis, view, frame)
         draw_outline(axis, view, start)
         axis.axhline(view.floor, color="black", linewidth=1.2)
         axis.set(aspect="equal", xlim=(view.low[0], view.high[0]), ylim=(view.low[1] - view.pixel[1], view.high[1]))
         axis.spines[["top", "right"]].set_visible(False)
-        axis.set_ylabel("z [m]" if results.dimension == 3 else "y [m]")
-        axis.text(0.012, 0.94, f"t = {results.times[frame]:.4g} s", transform=axis.transAxes, va="top",
-                  fontweight="bold")
-    axes[-1].set_xlabel("x [m]")
-    figure.suptitle(results.title, fontsize=10)
+        axis.set_title(f"t = {results.times[frame]:.4g} s", loc="left", fontsize=9, fontweight="bold", pad=3)
+    for axis in panels[:, 0]:
+        axis.set_ylabel("z [m]")
+    for axis in axes[-columns:]:
+        axis.set_xlabel("x [m]")
+        axis.tick_params(labelbottom=True)
+    figure.suptitle("\n".join(textwrap.wrap(results.title, round(width * 11))), fontsize=10)
     scale.explain(figure, axes)
     figure.savefig(path)
     plt.close(figure)
