@@ -30,12 +30,21 @@ void fill_in(Node& material) {
   material = std::move(own);
 }
 
+/// The same map with its keys in the order of the schema, whoever wrote them.
+Node in_order(const Node& whole) {
+  Node ordered = Node::map();
+  for (const FieldDoc& doc : case_schema().docs())
+    if (const Node* const section = whole.find(doc.name)) ordered.set(doc.name, *section);
+  return ordered;
+}
+
 }  // namespace
 
 std::string resolved_yaml(const Case& definition, const std::vector<std::pair<std::string, Node>>& sections) {
   Node whole = case_schema().write(definition);
   for (const auto& [name, section] : sections)
     if (section) whole.set(name, section);
+  whole = in_order(whole);
   if (Node* const materials = whole.find("materials"))
     for (Node& material : materials->items) fill_in(material);
   return yaml_text(whole);
