@@ -40,8 +40,8 @@ template <int Dim>
 void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some = everything);
 
 /// The same once more, from the momentum that the nodes have, with the force tiles added to the forces that they have:
-/// a correction, for example by a pressure that was not known before. `without_friction`, or null, has in its force tiles
-/// a part of all forces, whose pressure on faces gives no friction.
+/// a correction, for example by a pressure that was not known before. `without_friction`, or null, has in its force
+/// tiles a part of all forces, whose pressure on faces gives no friction.
 template <int Dim>
 void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction);
 
