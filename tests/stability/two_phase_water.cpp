@@ -39,7 +39,7 @@ TEST(Water, SloshesAtItsFrequency) {
   EXPECT_LT(most - start, 1e-3 * energy_of_mode);
 }
 
-TEST(Water, DISABLED_BreaksADamInThreeDimensions) {
+TEST(Water, BreaksADamInThreeDimensions) {
   const auto simulation = simulate_text(
       water_scene("{min: [0 m, 0 m, 0 m], max: [2 m, 0.5 m, 0.8 m], cell: 0.1 m}",
                   "  - {material: sea, box: {min: [0 m, 0 m, 0 m], max: [0.5 m, 0.5 m, 0.5 m]}}",
