@@ -285,7 +285,7 @@ def draw_field(results, view, name, frames, path):
         axis.tick_params(labelbottom=True)
     figure.suptitle("\n".join(textwrap.wrap(results.title, round(width * 11))), fontsize=10)
     scale.explain(figure, axes)
-    figure.savefig(path)
+    figure.savefig(path, bbox_inches="tight", pad_inches=0.06)
     plt.close(figure)
 
 
@@ -318,7 +318,7 @@ def draw_scatter(results, name, frames, path, most=60000):
         bar = figure.add_axes([0.2, 1 - 0.15 / height, 0.6, 0.1 / height])
         figure.colorbar(plt.cm.ScalarMappable(scale.norm, scale.map), cax=bar, orientation="horizontal",
                         label=scale.label, extend=scale.extend)
-    figure.savefig(path)
+    figure.savefig(path, bbox_inches="tight", pad_inches=0.06)
     plt.close(figure)
 
 
@@ -425,7 +425,7 @@ def draw_history(table, path):
         axes[2].plot(time[chosen], step[chosen], ".", markersize=3, label=name)
     axes[2].set(ylabel="time step [s]", ylim=(0, None), xlabel="time [s]")
     axes[2].legend(frameon=False, fontsize=8, title="limited by", title_fontsize=8)
-    figure.savefig(path)
+    figure.savefig(path, bbox_inches="tight", pad_inches=0.06)
     plt.close(figure)
 
 
@@ -442,7 +442,7 @@ def draw_observations(table, path):
         axis.set_title(with_unit(name), fontsize=9, loc="left")
         axis.grid(linewidth=0.3)
     axes[-1, 0].set_xlabel("time [s]")
-    figure.savefig(path)
+    figure.savefig(path, bbox_inches="tight", pad_inches=0.06)
     plt.close(figure)
 
 
