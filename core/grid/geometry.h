@@ -49,6 +49,12 @@ struct GridGeometry {
     for (const double c : cell) v *= c;
     return v;
   }
+  /// The corner of cells with these numbers, from 0 at `min`.
+  Vector<Dim> vertex(const Index<Dim>& place) const {
+    Vector<Dim> x;
+    for (int a = 0; a < Dim; ++a) x[a] = min[a] + place[a] * cell[a];
+    return x;
+  }
   /// The cell that holds x; x outside the grid belongs to the nearest cell.
   Index<Dim> cell_of(const Vector<Dim>& x) const {
     Index<Dim> c;

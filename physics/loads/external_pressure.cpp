@@ -91,10 +91,9 @@ template <int Dim>
 void ExternalPressure<Dim>::load(const Index<Dim>& first_cell, double t, Lane* tile) const {
   constexpr int width = tile_width<Dim>(1);
   for (int n = 0; n < power(width, Dim); ++n) {
-    Vector<Dim> x;
-    for (int a = 0, rest = n; a < Dim; ++a, rest /= width)
-      x[a] = grid_.min[a] + grid_.cell[a] * (first_cell[a] - tile_margin + rest % width);
-    tile[n * motion_lanes<Dim>] = Lane{at(x, t), 0, 0, 0};
+    Index<Dim> place;
+    for (int a = 0, rest = n; a < Dim; ++a, rest /= width) place[a] = first_cell[a] - tile_margin + rest % width;
+    tile[n * motion_lanes<Dim>] = Lane{at(grid_.vertex(place), t), 0, 0, 0};
   }
 }
 

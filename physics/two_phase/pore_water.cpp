@@ -172,8 +172,12 @@ void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const Part
 }
 
 template <int Dim>
-void PoreWater<Dim>::zero_forces(const Scene<Dim>& scene, Lane* tile) const {
-  std::fill_n(tile, scene.nodes.tile_size(), Lane{});
+void PoreWater<Dim>::scatter_isotropic(const Scene<Dim>& scene, const ParticleBlock<Dim>& block, const double* stress,
+                                       Lane* force_tile) const {
+  ScatterInput<Dim> in = scene.scatter_input(block);
+  in.stress.fill(scene.particles.columns.data(zero_));
+  for (int a = 0; a < Dim; ++a) in.stress[a] = stress;
+  scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, force_tile);
 }
 
 template <int Dim>
@@ -203,7 +207,7 @@ template <int Dim>
 void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
                              const PressureEquation<Dim>& equation) {
   if (!equation.is_wet(b)) {
-    zero_forces(scene, scene.nodes.force_tile(b));
+    std::fill_n(scene.nodes.force_tile(b), scene.nodes.tile_size(), Lane{});
     return;
   }
   Columns& columns = scene.particles.columns;
@@ -215,10 +219,7 @@ void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlo
     stress[p] = water_.increment * pressure[p] - added[p];
     pressure[p] = added[p];
   }
-  ScatterInput<Dim> in = scene.scatter_input(block);
-  in.stress.fill(columns.data(zero_));
-  for (int a = 0; a < Dim; ++a) in.stress[a] = stress;
-  scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, scene.nodes.force_tile(b));
+  scatter_isotropic(scene, block, stress, scene.nodes.force_tile(b));
 }
 
 template <int Dim>
@@ -232,10 +233,7 @@ void PoreWater<Dim>::scatter_pressure(Scene<Dim>& scene, std::size_t b, const Pa
     const double* here = columns.data(outside_pressure_);
     for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] += here[p];
   }
-  ScatterInput<Dim> in = scene.scatter_input(block);
-  in.stress.fill(columns.data(zero_));
-  for (int a = 0; a < Dim; ++a) in.stress[a] = stress;
-  scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, nodes.force_tile(b));
+  scatter_isotropic(scene, block, stress, nodes.force_tile(b));
 }
 
 // ---- to cells and vertices ----
@@ -443,15 +441,6 @@ double PoreWater<Dim>::compression_energy(const Particles& particles) const {
     const double pressure = columns.data(pressure_)[p];
     sum += 0.5 * columns.data(particles.volume)[p] * columns.data(porosity_)[p] * compressibility * pressure * pressure;
   }
-  return sum;
-}
-
-template <int Dim>
-double PoreWater<Dim>::water_volume(const Particles& particles) const {
-  const Columns& columns = particles.columns;
-  double sum = 0;
-  for (std::size_t p = 0; p < particles.size(); ++p)
-    sum += columns.data(particles.volume)[p] * columns.data(porosity_)[p] * columns.data(wet_)[p];
   return sum;
 }
 

@@ -80,9 +80,8 @@ class PoreWater {
   /// Largest speed of sound, where no drag holds the water back [m/s].
   double fastest_sound(const Particles& particles) const;
 
-  /// Energy stored in the compressed water, and its volume [J], [m3].
+  /// Energy stored in the compressed water [J].
   double compression_energy(const Particles& particles) const;
-  double water_volume(const Particles& particles) const;
 
   /// k / gamma_w along each axis [m2/(Pa s)] of a material at a porosity.
   std::array<double, Dim> mobility(const PoreSpace& space, double porosity) const;
@@ -92,7 +91,9 @@ class PoreWater {
                              const ExternalPressure<Dim>& outside);
   double sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
              const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
-  void zero_forces(const Scene<Dim>& scene, Lane* tile) const;
+  /// Forces of `stress`, a column, along all axes to a force tile.
+  void scatter_isotropic(const Scene<Dim>& scene, const ParticleBlock<Dim>& block, const double* stress,
+                         Lane* force_tile) const;
 
   const WaterCase& water_;
   std::vector<PoreSpace> spaces_;

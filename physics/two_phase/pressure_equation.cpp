@@ -188,13 +188,6 @@ bool PressureEquation<Dim>::on_face(const Index<Dim>& place, int axis, int side)
   return place[axis] == (side == 0 ? 0 : geometry_.cells[axis]);
 }
 
-template <int Dim>
-Vector<Dim> PressureEquation<Dim>::position(const Index<Dim>& place) const {
-  Vector<Dim> x;
-  for (int a = 0; a < Dim; ++a) x[a] = geometry_.min[a] + place[a] * geometry_.cell[a];
-  return x;
-}
-
 /// Inside is a vertex more than half of whose surroundings, in the grid, are wet: on a flat surface, that lies below
 /// it.
 template <int Dim>
@@ -213,7 +206,7 @@ void PressureEquation<Dim>::classify(const PressureStep& step) {
       for (int side = 0; side < 2; ++side) {
         const WaterFace* const face = faces_[static_cast<std::size_t>(2 * a + side)];
         if (face == nullptr || !on_face(vertex.place, a, side)) continue;
-        const double head = face->head ? face->head->at(step.time) - position(vertex.place)[Dim - 1] : 0;
+        const double head = face->head ? face->head->at(step.time) - geometry_.vertex(vertex.place)[Dim - 1] : 0;
         // Above its level, water leaves through the face where it has pressure: a seepage face.
         const bool seeps = face->head && head <= 0 && old_[v] > 0;
         if (face->pressure || head > 0 || seeps) {
@@ -273,7 +266,8 @@ typename PressureEquation<Dim>::Crossing PressureEquation<Dim>::crossing(std::si
                                                                          double time) const {
   const double share = surface_share(inside, neighbour);
   if (!outside.any()) return {share, 0};
-  const Vector<Dim> from = position(grid_.vertices()[inside].place), to = position(grid_.vertices()[neighbour].place);
+  const Vector<Dim> from = geometry_.vertex(grid_.vertices()[inside].place),
+                    to = geometry_.vertex(grid_.vertices()[neighbour].place);
   Vector<Dim> x;
   for (int a = 0; a < Dim; ++a) x[a] = from[a] + share * (to[a] - from[a]);
   return {share, outside.of_ponds(x, time)};
@@ -289,8 +283,7 @@ double PressureEquation<Dim>::face_flux(const typename Grid::Vertex& vertex, dou
     for (int side = 0; side < 2; ++side) {
       const WaterFace* const face = faces_[static_cast<std::size_t>(2 * a + side)];
       if (face == nullptr || !face->flux || !on_face(vertex.place, a, side)) continue;
-      const double area = 2 * vertex.share * geometry_.cell_volume() / geometry_.cell[a];
-      flux += face->flux->at(time) * area;
+      flux += face->flux->at(time) * Grid::area_on_face(vertex, geometry_, a);
     }
   if (flux == 0 || water_.formulation != Formulation::v_w_p) return flux;
   CellSums<Dim> around;
@@ -362,7 +355,7 @@ void PressureEquation<Dim>::assemble(const ExternalPressure<Dim>& outside, const
 
 template <int Dim>
 void PressureEquation<Dim>::explain(const NotPositiveDefinite& error) const {
-  const Vector<Dim> x = position(grid_.vertices()[static_cast<std::size_t>(error.column())].place);
+  const Vector<Dim> x = geometry_.vertex(grid_.vertices()[static_cast<std::size_t>(error.column())].place);
   std::string where = fmt::format("{:.4g}", x[0]);
   for (int a = 1; a < Dim; ++a) where += fmt::format(", {:.4g}", x[a]);
   throw CaseError(
@@ -445,7 +438,7 @@ void PressureEquation<Dim>::extrapolate(const ExternalPressure<Dim>& outside, do
       const double share = continuation(i, j, n), weight = line_weight<Dim>(n) / line_weights_[j];
       sum += share * pressure_[i] + (weight - share) * crossing(i, j, outside, time).pressure;
     }
-    pressure_[j] = line_weights_[j] > 0 ? sum : outside.of_ponds(position(vertex.place), time);
+    pressure_[j] = line_weights_[j] > 0 ? sum : outside.of_ponds(geometry_.vertex(vertex.place), time);
   });
 }
 

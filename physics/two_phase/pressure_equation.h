@@ -116,7 +116,6 @@ class PressureEquation {
   double surface_share(std::size_t inside, std::size_t neighbour) const;
   Crossing crossing(std::size_t inside, std::size_t neighbour, const ExternalPressure<Dim>& outside, double time) const;
   double face_flux(const typename Grid::Vertex& vertex, double time) const;
-  Vector<Dim> position(const Index<Dim>& place) const;
   void weigh_lines();
   double continuation(std::size_t i, std::size_t j, std::size_t n) const;
   void extrapolate(const ExternalPressure<Dim>& outside, double time);

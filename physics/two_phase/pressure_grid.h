@@ -38,6 +38,11 @@ class PressureGrid {
   /// Where the tiles of blocks hold the sums that belong to one cell or vertex; -1 where there are fewer.
   using Entries = std::array<std::int32_t, corners>;
 
+  /// The part of a face of the grid, normal to an axis, that belongs to a vertex on it [m^(Dim-1)].
+  static double area_on_face(const Vertex& vertex, const GridGeometry<Dim>& grid, int axis) {
+    return 2 * vertex.share * grid.cell_volume() / grid.cell[axis];
+  }
+
   /// Numbers the vertices of the cells in `wet`, which is not empty, and those within the margin.
   void build(const std::vector<Index<Dim>>& wet, const GridGeometry<Dim>& grid);
   /// Links cells and vertices to the tiles of the blocks, after these have changed.

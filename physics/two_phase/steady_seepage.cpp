@@ -67,10 +67,9 @@ class Seepage {
 
   double fill(std::size_t v) const {
     double volume = 0;
-    int cells = 0;
     for (const std::int32_t c : grid_.vertices()[v].cell)
-      if (c >= 0) volume += sums_[static_cast<std::size_t>(c)].volume, ++cells;
-    return cells > 0 ? volume / (grid_.vertices()[v].share * Grid::corners * geometry_.cell_volume()) : 0;
+      if (c >= 0) volume += sums_[static_cast<std::size_t>(c)].volume;
+    return volume / (grid_.vertices()[v].share * Grid::corners * geometry_.cell_volume());
   }
 
   void classify(std::size_t v, const WaterCase& water, const ExternalPressure<Dim>& outside, double unit_weight,
@@ -79,8 +78,7 @@ class Seepage {
     const double share = fill(v);
     kind_[v] = share <= 0 ? Kind::none : share < 0.999 ? Kind::closed : Kind::free;
     if (share <= 0) return;
-    Vector<Dim> x;
-    for (int a = 0; a < Dim; ++a) x[a] = geometry_.min[a] + vertex.place[a] * geometry_.cell[a];
+    const Vector<Dim> x = geometry_.vertex(vertex.place);
     if (kind_[v] == Kind::closed) {
       given_[v] = outside.of_ponds(x, time);
       if (given_[v] > 0) kind_[v] = Kind::given;
@@ -90,10 +88,7 @@ class Seepage {
       const auto face = water.faces.find(names[static_cast<std::size_t>(f)]);
       if (face == water.faces.end() || vertex.place[f / 2] != (f % 2 == 0 ? 0 : geometry_.cells[f / 2])) continue;
       const auto& [pressure, head, flux] = face->second;
-      if (flux) {
-        const double area = 2 * vertex.share * geometry_.cell_volume() / geometry_.cell[f / 2];
-        outflow_[v] += flux->at(time) * area;
-      }
+      if (flux) outflow_[v] += flux->at(time) * Grid::area_on_face(vertex, geometry_, f / 2);
       const double below = head ? head->at(time) - x[Dim - 1] : 0;
       if (head && below <= 0) kind_[v] = Kind::closed;
       if (!pressure && below <= 0) continue;
@@ -126,7 +121,7 @@ class Seepage {
   bool fixed(std::size_t v) const { return kind_[v] == Kind::given || kind_[v] == Kind::open; }
   double value(std::size_t v) const { return kind_[v] == Kind::given ? given_[v] : 0; }
 
-  /// Adds a cell's part of (matrix) p = (right side) to visit(m, n, coupling) and push(m, flow).
+  /// A cell's part of (matrix) p = (right side): calls couple(m, n, coupling) and push(m, flow).
   template <class Couple, class Push>
   void for_cell(std::size_t c, const Couple& couple, const Push& push) const {
     if (!(sums_[c].volume > 0)) return;

@@ -31,7 +31,6 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
       relative_(definition, water_, pores_),
       outside_(loads_, water_.ponds, -water_.density * definition.gravity.back(), grid_of<Dim>(definition.grid)),
       pressure_(water_, grid_of<Dim>(definition.grid), definition.gravity.back()) {
-  for (int a = 0; a < Dim; ++a) gravity_[a] = definition.gravity[static_cast<std::size_t>(a)];
   check_changes(definition);
 }
 
@@ -210,7 +209,7 @@ std::vector<TimeStepLimit> TwoPhase<Dim>::limits(const Scene<Dim>& scene, const 
   std::vector<TimeStepLimit> all = explicit_limits(scene, fastest, factors);
   if (sound) all.front().name = "sound";
   double g = 0;
-  for (const double component : gravity_) g = std::hypot(g, component);
+  for (const double component : scene.gravity) g = std::hypot(g, component);
   if (pores_.any_liquid() && g > 0)
     all.push_back({factors.courant * std::sqrt(scene.grid.smallest_cell() / g), "gravity"});
   return all;
@@ -284,7 +283,7 @@ std::vector<std::pair<std::string, Node>> TwoPhase<Dim>::resolved_sections() con
   return {{"materials", materials},
           {"initial_stress", resolved(initial_stress_)},
           {"surface_loads", resolved_surface_loads(loads_)},
-          {"water", resolved(water_, Dim)}};
+          {"water", resolved(water_)}};
 }
 
 namespace {

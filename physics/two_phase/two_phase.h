@@ -59,9 +59,8 @@ class TwoPhase final : public PhysicsModule<Dim> {
   NodeFields<Dim> wall_;       // forces of the pressure alone, which presses on faces without friction
   std::vector<double> power_;  // dissipated by the flow, by block [W]
   double dissipated_ = 0;      // [J], since the start
-  Vector<Dim> gravity_{};
-  double discharge_ = 0;  // of the steady seepage at the start [m3/s]
-  bool placed_ = false;   // the pressure equation knows the blocks
+  double discharge_ = 0;       // of the steady seepage at the start [m3/s]
+  bool placed_ = false;        // the pressure equation knows the blocks
 };
 
 }  // namespace sluice

@@ -262,7 +262,7 @@ WaterCase read_water(const Case& definition) {
   return water;
 }
 
-Node resolved(const WaterCase& water, int) { return schema().write(water); }
+Node resolved(const WaterCase& water) { return schema().write(water); }
 std::vector<FieldDoc> water_docs() {
   return {
       {.name = "water",

@@ -75,7 +75,7 @@ struct PoreSpace {
 
 /// Throws CaseError.
 WaterCase read_water(const Case& definition);
-Node resolved(const WaterCase& water, int dimension);
+Node resolved(const WaterCase& water);
 /// The keys that the module reads, for the reference.
 std::vector<FieldDoc> water_docs();
 

@@ -7,26 +7,29 @@
 namespace sluice {
 namespace {
 
-/// A small dam of two soils on a rough floor, over several blocks, that yields and slides.
+/// A small dam of two soils, `soil` and `clay`, on a rough floor, over several blocks.
+SceneText dam_scene(bool flat, const std::string& cell) {
+  return {.grid = (flat ? "{min: [-10 m, 0 m], max: [14 m, 8 m], cell: "
+                        : "{min: [-4 m, 0 m, 0 m], max: [6 m, 3 m, 4 m], cell: ") +
+                  cell + "}",
+          .bodies = flat ? "  - {material: soil, polygon: [[-6 m, 0 m], [0 m, 5 m], [2 m, 5 m], [8 m, 0 m]]}\n"
+                           "  - {material: clay, box: {min: [0 m, 0 m], max: [2 m, 4 m]}, replaces: soil}"
+                         : "  - {material: soil, box: {min: [-2 m, 0 m, 0 m], max: [2 m, 3 m, 2 m]}}\n"
+                           "  - {material: clay, box: {min: [0 m, 0 m, 0 m], max: [1 m, 3 m, 1.5 m]}, replaces: soil}",
+          .gravity = flat ? "[0, -9.81 m/s2]" : "[0, 0, -9.81 m/s2]",
+          .boundaries = flat ? "{bottom: {normal: fixed, friction: 0.4}, left: roller, right: roller}"
+                             : "{bottom: {normal: fixed, friction: 0.4}, front: roller, back: roller}"};
+}
+
+/// Without water: it yields and slides.
 std::unique_ptr<Simulation> dam(int dimension, const Scheme& scheme, const std::string& cell = "0.5 m") {
-  const bool flat = dimension == 2;
-  SceneText scene{
-      .grid = (flat ? "{min: [-10 m, 0 m], max: [14 m, 8 m], cell: "
-                    : "{min: [-4 m, 0 m, 0 m], max: [6 m, 3 m, 4 m], cell: ") +
-              cell + "}",
-      .material =
-          "{model: mohr_coulomb, density: 1800 kg/m3, youngs_modulus: 1 MPa, poisson_ratio: 0.3, friction_angle: 20 "
-          "deg, cohesion: 1 kPa}\n"
-          "  clay: {model: mohr_coulomb, density: 1900 kg/m3, youngs_modulus: 2 MPa, poisson_ratio: 0.3, "
-          "friction_angle: 0 deg, cohesion: 5 kPa}",
-      .bodies = flat ? "  - {material: soil, polygon: [[-6 m, 0 m], [0 m, 5 m], [2 m, 5 m], [8 m, 0 m]]}\n"
-                       "  - {material: clay, box: {min: [0 m, 0 m], max: [2 m, 4 m]}, replaces: soil}"
-                     : "  - {material: soil, box: {min: [-2 m, 0 m, 0 m], max: [2 m, 3 m, 2 m]}}\n"
-                       "  - {material: clay, box: {min: [0 m, 0 m, 0 m], max: [1 m, 3 m, 1.5 m]}, replaces: soil}",
-      .gravity = flat ? "[0, -9.81 m/s2]" : "[0, 0, -9.81 m/s2]",
-      .boundaries = flat ? "{bottom: {normal: fixed, friction: 0.4}, left: roller, right: roller}"
-                         : "{bottom: {normal: fixed, friction: 0.4}, front: roller, back: roller}",
-      .scheme = scheme};
+  SceneText scene = dam_scene(dimension == 2, cell);
+  scene.material =
+      "{model: mohr_coulomb, density: 1800 kg/m3, youngs_modulus: 1 MPa, poisson_ratio: 0.3, friction_angle: 20 "
+      "deg, cohesion: 1 kPa}\n"
+      "  clay: {model: mohr_coulomb, density: 1900 kg/m3, youngs_modulus: 2 MPa, poisson_ratio: 0.3, "
+      "friction_angle: 0 deg, cohesion: 5 kPa}";
+  scene.scheme = scheme;
   auto simulation = simulate(scene);
   // Something to cross cells and blocks, so that particles are sorted several times.
   set_column(simulation->particles(), "velocity", 0, [](const auto& x) { return 3 + 0.3 * x[1]; });
@@ -123,23 +126,13 @@ INSTANTIATE_TEST_SUITE_P(Schemes, Reproducibility, ::testing::ValuesIn(all_schem
 
 /// The same dam, saturated, with its pore water: of two permeabilities, drained at the surface, loaded by its weight.
 std::unique_ptr<Simulation> wet_dam(int dimension, const std::string& formulation) {
-  const bool flat = dimension == 2;
   const std::string soil =
       "{{model: mohr_coulomb, density: 1600 kg/m3, youngs_modulus: 1 MPa, poisson_ratio: 0.3, friction_angle: 20 deg, "
       "cohesion: 1 kPa, water: {{porosity: 0.4, permeability: {} m/s}}}}";
-  SceneText scene{
-      .grid = flat ? "{min: [-10 m, 0 m], max: [14 m, 8 m], cell: 0.5 m}"
-                   : "{min: [-4 m, 0 m, 0 m], max: [6 m, 3 m, 4 m], cell: 0.5 m}",
-      .material = fmt::format(fmt::runtime(soil), "1e-3") + "\n  clay: " + fmt::format(fmt::runtime(soil), "1e-6"),
-      .bodies = flat ? "  - {material: soil, polygon: [[-6 m, 0 m], [0 m, 5 m], [2 m, 5 m], [8 m, 0 m]]}\n"
-                       "  - {material: clay, box: {min: [0 m, 0 m], max: [2 m, 4 m]}, replaces: soil}"
-                     : "  - {material: soil, box: {min: [-2 m, 0 m, 0 m], max: [2 m, 3 m, 2 m]}}\n"
-                       "  - {material: clay, box: {min: [0 m, 0 m, 0 m], max: [1 m, 3 m, 1.5 m]}, replaces: soil}",
-      .gravity = flat ? "[0, -9.81 m/s2]" : "[0, 0, -9.81 m/s2]",
-      .boundaries = flat ? "{bottom: {normal: fixed, friction: 0.4}, left: roller, right: roller}"
-                         : "{bottom: {normal: fixed, friction: 0.4}, front: roller, back: roller}",
-      .physics = "two_phase",
-      .more = fmt::format("water: {{formulation: {}, bulk_modulus: 2.2 GPa}}\n", formulation)};
+  SceneText scene = dam_scene(dimension == 2, "0.5 m");
+  scene.material = fmt::format(fmt::runtime(soil), "1e-3") + "\n  clay: " + fmt::format(fmt::runtime(soil), "1e-6");
+  scene.physics = "two_phase";
+  scene.more = fmt::format("water: {{formulation: {}, bulk_modulus: 2.2 GPa}}\n", formulation);
   auto simulation = simulate(scene);
   set_column(simulation->particles(), "velocity", 0, [](const auto& x) { return 3 + 0.3 * x[1]; });
   return simulation;
