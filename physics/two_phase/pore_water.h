@@ -8,6 +8,7 @@
 #include "physics/initial_stress/initial_stress.h"
 #include "physics/loads/external_pressure.h"
 #include "physics/materials/materials.h"
+#include "physics/two_phase/cell_sums.h"
 #include "physics/two_phase/pressure_equation.h"
 #include "physics/two_phase/water.h"
 
@@ -83,8 +84,8 @@ class PoreWater {
   /// Energy stored in the compressed water [J].
   double compression_energy(const Particles& particles) const;
 
-  /// k / gamma_w along each axis [m2/(Pa s)] of a material at a porosity.
-  std::array<double, Dim> mobility(const PoreSpace& space, double porosity) const;
+  /// How easily water passes a material.
+  Mobility<Dim> mobility(const PoreSpace& space) const;
 
  private:
   void take_outside_pressure(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
@@ -101,7 +102,7 @@ class PoreWater {
   std::unique_ptr<ShapeKernels<Dim>> linear_;
 
   ColumnId pressure_, pressure_gradient_, porosity_, solid_mass_, inertia_, wet_;         // state
-  ColumnId wet_volume_, divergence_, acceleration_, new_pressure_, total_stress_, zero_;  // derived
+  ColumnId divergence_, acceleration_, new_pressure_, total_stress_, zero_;              // derived
   ColumnId outside_pressure_, body_force_;
 };
 

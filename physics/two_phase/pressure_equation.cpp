@@ -51,7 +51,7 @@ template <int Dim>
 void PressureEquation<Dim>::prepare(const Scene<Dim>& scene, const std::vector<char>& wet) {
   wet_ = wet;
   const std::size_t blocks = scene.blocks.particle_blocks().size();
-  cell_sums_.resize(blocks * Grid::cell_tile);
+  cell_sums_.resize(blocks * cell_tile<Dim>);
   vertex_tiles_.resize(blocks * Grid::vertex_tile);
   if (!grid_.empty()) grid_.locate(scene.blocks);
 }
@@ -61,10 +61,10 @@ template <int Dim>
 bool PressureEquation<Dim>::covered(const Scene<Dim>& scene) const {
   if (grid_.empty()) return false;
   for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b) {
-    if (!is_wet(b)) continue;
+    if (!is_wet(b) || !grid_.has_gaps(b)) continue;
     const std::int32_t* const cell = grid_.cells_of_tile(b);
-    for (std::size_t n = 0; n < Grid::cell_tile; ++n)
-      if (cell[n] < 0 && cell_sums_[b * Grid::cell_tile + n].volume > 0) return false;
+    for (std::size_t n = 0; n < cell_tile<Dim>; ++n)
+      if (cell[n] < 0 && cell_sums_[b * cell_tile<Dim> + n].volume > 0) return false;
   }
   return true;
 }
@@ -74,11 +74,11 @@ void PressureEquation<Dim>::rebuild(const Scene<Dim>& scene) {
   std::vector<Index<Dim>> places;
   for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b) {
     if (!is_wet(b)) continue;
-    for (std::size_t n = 0; n < Grid::cell_tile; ++n) {
-      if (!(cell_sums_[b * Grid::cell_tile + n].volume > 0)) continue;
+    for (std::size_t n = 0; n < cell_tile<Dim>; ++n) {
+      if (!(cell_sums_[b * cell_tile<Dim> + n].volume > 0)) continue;
       Index<Dim> place = scene.blocks.particle_blocks()[b].first_cell;
-      for (int a = 0, rest = static_cast<int>(n); a < Dim; ++a, rest /= Grid::cell_tile_width)
-        place[a] += rest % Grid::cell_tile_width - tile_margin;
+      for (int a = 0, rest = static_cast<int>(n); a < Dim; ++a, rest /= cell_tile_width<Dim>)
+        place[a] += rest % cell_tile_width<Dim> - tile_margin;
       places.push_back(place);
     }
   }
@@ -122,7 +122,7 @@ void PressureEquation<Dim>::sum_tiles() {
     CellSums<Dim> sum;
     for (const std::int32_t entry : grid_.cell_entries(c)) {
       const auto at = static_cast<std::size_t>(entry);
-      if (entry >= 0 && is_wet(at / Grid::cell_tile)) sum.add(cell_sums_[at]);
+      if (entry >= 0 && is_wet(at / cell_tile<Dim>)) sum.add(cell_sums_[at]);
     }
     sums_[c] = sum;
   });
@@ -147,7 +147,7 @@ typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(cons
   if (!(sums.volume > 0)) return cell;
   const double inverse = 1 / sums.volume, specific = sums.inverse_density * inverse;
   const double lightness = water_.density * specific;  // rho_w / rho
-  cell.storage = sums.storage * inverse / step.dt;
+  cell.storage = sums.storage * inverse / step.dt * geometry_.cell_volume() / Grid::corners;
   const double compliance = step.stabilised ? sums.compliance * inverse : 0;
   for (int a = 0; a < Dim; ++a) {
     const double h = geometry_.cell[a], mobility = sums.mobility[a] * inverse;
@@ -159,9 +159,13 @@ typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(cons
     // soil is coarse.
     const double lagged = (lightness - 0.4) * mobility - step.kick * specific;
     const double stabilisation = std::max({0.0, wanted - projection, lagged});
-    cell.implicit[a] = projection + stabilisation;
-    cell.old[a] = water_.increment * (projection - mobility) + stabilisation;
-    cell.push[a] = sums.push[a] * inverse;
+    const double implicit = projection + stabilisation;
+    const double old = water_.increment * (projection - mobility) + stabilisation, push = sums.push[a] * inverse;
+    for (std::size_t n = 0; n < Grid::corners; ++n) {
+      cell.implicit[n] += implicit * integrals_.laplacian[a][n];
+      cell.old[n] += old * integrals_.laplacian[a][n];
+      cell.push[n] += push * integrals_.slope[a][n];
+    }
   }
   return cell;
 }
@@ -241,14 +245,12 @@ typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Gr
     if (vertex.cell[k] < 0) continue;
     const CellState& cell = cells_[static_cast<std::size_t>(vertex.cell[k])];
     const std::size_t m = Grid::corners - 1 - k;
-    row.storage += cell.storage * geometry_.cell_volume() / Grid::corners;
-    for (std::size_t a = 0; a < Dim; ++a) row.push += integrals_.slope[a][m] * cell.push[a];
+    row.storage += cell.storage;
+    row.push += cell.push[m];
     for (std::size_t n = 0; n < Grid::corners; ++n) {
       const std::size_t place = neighbour_places<Dim>[m][n];
-      for (std::size_t a = 0; a < Dim; ++a) {
-        row.implicit[place] += cell.implicit[a] * integrals_.laplacian[a][m][n];
-        row.old[place] += cell.old[a] * integrals_.laplacian[a][m][n];
-      }
+      row.implicit[place] += cell.implicit[m ^ n];
+      row.old[place] += cell.old[m ^ n];
     }
   }
   return row;

@@ -15,31 +15,13 @@
 #include "core/output/archive.h"
 #include "core/simulation/scene.h"
 #include "physics/loads/external_pressure.h"
+#include "physics/two_phase/cell_sums.h"
 #include "physics/two_phase/corner_integrals.h"
 #include "physics/two_phase/pressure_grid.h"
 #include "physics/two_phase/water.h"
 #include "solvers/lagged_cholesky.h"
 
 namespace sluice {
-
-/// Sums over the wet particles of a cell, each weighted with the volume.
-template <int Dim>
-struct CellSums {
-  double volume = 0;                   ///< [m3]
-  double inverse_density = 0;          ///< of 1 / rho, rho that of soil with water
-  double compliance = 0;               ///< of 1 / M, M the constrained modulus of the skeleton; 0 without one
-  double storage = 0;                  ///< of n / K_w
-  std::array<double, Dim> mobility{};  ///< of K = k / gamma_w and the like [m2/(Pa s)], along each axis
-  std::array<double, Dim> push{};      ///< of K rho_w (b - a) and the like: what drives water but the pressure [m/s]
-
-  void add(const CellSums& other) {
-    volume += other.volume;
-    inverse_density += other.inverse_density;
-    compliance += other.compliance;
-    storage += other.storage;
-    for (std::size_t a = 0; a < Dim; ++a) mobility[a] += other.mobility[a], push[a] += other.push[a];
-  }
-};
 
 /// What the pressure has to do in a step.
 struct PressureStep {
@@ -59,7 +41,7 @@ class PressureEquation {
   void prepare(const Scene<Dim>& scene, const std::vector<char>& wet);
   bool is_wet(std::size_t block) const { return wet_[block] != 0; }
 
-  CellSums<Dim>* cell_sums(std::size_t block) { return cell_sums_.data() + block * PressureGrid<Dim>::cell_tile; }
+  CellSums<Dim>* cell_sums(std::size_t block) { return cell_sums_.data() + block * cell_tile<Dim>; }
   /// Lanes {V, V p, V div v, …} of linear shape functions.
   Lane* vertex_tile(std::size_t block) { return vertex_tiles_.data() + block * PressureGrid<Dim>::vertex_tile; }
 
@@ -86,10 +68,10 @@ class PressureEquation {
 
   /// Coefficients of one cell.
   struct CellState {
-    std::array<double, Dim> implicit{};  ///< of the new pressure [m2/(Pa s)]
-    std::array<double, Dim> old{};       ///< of the old pressure
-    std::array<double, Dim> push{};
-    double storage = 0;  ///< per time [1/(Pa s)]
+    /// [m ^ n]: couplings of corners m and n through the new and the old pressure.
+    std::array<double, Grid::corners> implicit{}, old{};
+    std::array<double, Grid::corners> push{};  ///< of each corner [m3/s]
+    double storage = 0;                        ///< of each corner
   };
   /// Couplings of a vertex with those around it.
   struct Row {

@@ -165,9 +165,10 @@ void RelativeMotion<Dim>::set_drag(Scene<Dim>& scene, const ParticleBlock<Dim>& 
   for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
     const Batch& batch = scene.blocks.batches()[k];
     const PoreSpace& space = pores_.spaces()[static_cast<std::size_t>(batch.material)];
+    const Mobility<Dim> mobilities = pores_.mobility(space);
     for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
       const bool porous = wet[p] != 0 && !space.liquid;
-      const double n = porosity[p], mobility = porous ? pores_.mobility(space, n)[0] : 1;
+      const double n = porosity[p], mobility = porous ? mobilities.along(0, mobilities.factor(n)) : 1;
       drag[p] = porous ? volume[p] * n * n / mobility : 0;
       for (int a = 0; a < Dim; ++a) {
         const double slope = columns.data(pores_.pressure_gradient(), a)[p];

@@ -2,7 +2,7 @@
 ///
 ///   sluice_performance [--smoke] [--sizes 1 0.25 0.125] [--only linear]
 ///   sluice_performance --solver      the sparse solvers instead (solver.h)
-///   sluice_performance --two-phase   steps with pore water instead (two_phase.h)
+///   sluice_performance --two-phase [--only step]   steps with pore water instead (two_phase.h)
 ///
 /// `--only` leaves out the kernels whose names do not contain the word; the plain one stays.
 /// Every figure is a rate of bursts taken in turn (plain, linear, quadratic, …, plain, …), so that a machine whose
@@ -196,7 +196,7 @@ int main(int argc, char** argv) {
       cells.push_back(std::stod(word));
   }
   if (solver || smoke) measure_solvers(smoke);
-  if (water || smoke) measure_two_phase(smoke);
+  if (water || smoke) measure_two_phase(smoke, kernels == "step");
   if (solver || water) return 0;
   if (cells.empty()) cells = smoke ? std::vector<double>{1} : std::vector<double>{1, 0.25, 0.125};
   double in_cache = 0;
