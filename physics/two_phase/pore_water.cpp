@@ -132,7 +132,6 @@ SkeletonLoads<Dim> PoreWater<Dim>::skeleton_loads(Scene<Dim>& scene, const Exter
 
 // ---- forces ----
 
-/// Outside pressure at the particles, and the force -V grad P that goes with it.
 template <int Dim>
 void PoreWater<Dim>::take_outside_pressure(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
                                            const ExternalPressure<Dim>& outside) {
@@ -377,6 +376,22 @@ double PoreWater<Dim>::fastest_sound(const Particles& particles) const {
                                                            : (modulus + wet) / density);
   }
   return std::sqrt(fastest);
+}
+
+template <int Dim>
+typename PoreWater<Dim>::OutsideSums PoreWater<Dim>::outside_sums(const Scene<Dim>& scene,
+                                                                  const ParticleBlock<Dim>& block) const {
+  const Columns& columns = scene.particles.columns;
+  const double* pressure = columns.data(outside_pressure_);
+  const double* volume = columns.data(scene.particles.volume);
+  OutsideSums sums;
+  for (std::uint32_t p = block.begin; p < block.end; ++p) sums.pressure_volume += pressure[p] * volume[p];
+  for (int a = 0; a < Dim; ++a) {
+    const double* force = columns.data(body_force_, a);
+    const double* position = columns.data(scene.particles.position, a);
+    for (std::uint32_t p = block.begin; p < block.end; ++p) sums.force_position += force[p] * position[p];
+  }
+  return sums;
 }
 
 template <int Dim>

@@ -81,15 +81,25 @@ class PoreWater {
   /// Largest speed of sound, where no drag holds the water back [m/s].
   double fastest_sound(const Particles& particles) const;
 
+  /// Sums of P V and of f x over the particles of a block, with the outside pressure P and the force f = -V grad P of
+  /// the predictor [J]. Where volumes change, P does the work of minus what is gained of the first; where positions
+  /// change, f does that of the second.
+  struct OutsideSums {
+    double pressure_volume = 0, force_position = 0;
+  };
+  OutsideSums outside_sums(const Scene<Dim>& scene, const ParticleBlock<Dim>& block) const;
+
   /// Energy stored in the compressed water [J].
   double compression_energy(const Particles& particles) const;
 
   /// How easily water passes a material.
   Mobility<Dim> mobility(const PoreSpace& space) const;
 
- private:
+  /// Outside pressure at the particles, and the force that goes with it; `scatter_forces` does it, too.
   void take_outside_pressure(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
                              const ExternalPressure<Dim>& outside);
+
+ private:
   double sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
              const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
   /// Forces of `stress`, a column, along all axes to a force tile.

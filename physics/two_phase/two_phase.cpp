@@ -137,7 +137,13 @@ void TwoPhase<Dim>::predict(Scene<Dim>& scene, double kick) {
   const bool stress_first = stress_.timing() == StressTiming::usf;
   if (stress_first) {
     velocity_from_momentum(scene);
+    if (outside_.any())
+      for_each_block(scene, stress_.workspaces(), [&](std::size_t, const auto& block, Workspace<Dim>& work) {
+        pores_.take_outside_pressure(scene, block, work.motion_tile.data(), outside_);
+      });
+    const auto before = outside_sums(scene);
     stress_.update(scene, scene.previous_dt, forces);
+    load_work_ -= outside_sums(scene).pressure_volume - before.pressure_volume;
   } else {
     const auto timing = scene.clock.time(Stage::scatter);
     for_each_block(scene, stress_.workspaces(), forces);
@@ -182,6 +188,7 @@ void TwoPhase<Dim>::correct(Scene<Dim>& scene, double kick) {
 /// Particles move and strain with the nodes; their pores follow.
 template <int Dim>
 void TwoPhase<Dim>::gather(Scene<Dim>& scene, double dt) {
+  const auto before = outside_sums(scene);
   if (relative_.active()) relative_.gather(scene, stress_.workspaces(), dt);
   switch (stress_.timing()) {
     case StressTiming::usf:
@@ -194,9 +201,27 @@ void TwoPhase<Dim>::gather(Scene<Dim>& scene, double dt) {
       stress_.gather_motion_and_map_again(scene, dt);
       break;
   }
+  const auto after = outside_sums(scene);
+  load_work_ += after.force_position - before.force_position - (after.pressure_volume - before.pressure_volume);
   const auto timing = scene.clock.time(Stage::gather);
   parallel_for(scene.blocks.particle_blocks().size(),
                [&](std::size_t b) { pores_.follow_volume(scene, scene.blocks.particle_blocks()[b]); });
+}
+
+/// Of all particles; nothing where nothing presses.
+template <int Dim>
+typename PoreWater<Dim>::OutsideSums TwoPhase<Dim>::outside_sums(const Scene<Dim>& scene) {
+  typename PoreWater<Dim>::OutsideSums all;
+  if (!outside_.any()) return all;
+  outside_sums_.resize(scene.blocks.particle_blocks().size());
+  parallel_for(outside_sums_.size(), [&](std::size_t b) {
+    outside_sums_[b] = pores_.outside_sums(scene, scene.blocks.particle_blocks()[b]);
+  });
+  for (const auto& of_block : outside_sums_) {
+    all.pressure_volume += of_block.pressure_volume;
+    all.force_position += of_block.force_position;
+  }
+  return all;
 }
 
 // ---- limits ----
@@ -230,7 +255,7 @@ std::vector<TimeStepLimit> TwoPhase<Dim>::hard_limits(const Scene<Dim>& scene) c
 
 template <int Dim>
 void TwoPhase<Dim>::store(Archive& archive) const {
-  archive.reals["two_phase"] = {stress_.fastest_wave(), dissipated_, discharge_};
+  archive.reals["two_phase"] = {stress_.fastest_wave(), dissipated_, discharge_, load_work_};
   pressure_.store(archive);
 }
 
@@ -240,17 +265,21 @@ void TwoPhase<Dim>::restore(const Archive& archive) {
   stress_.restore_fastest_wave(own.at(0));
   dissipated_ = own.at(1);
   discharge_ = own.at(2);
+  load_work_ = own.at(3);
   pressure_.restore(archive);
   placed_ = false;
 }
 
 template <int Dim>
 std::vector<std::pair<std::string, double>> TwoPhase<Dim>::energies(const Scene<Dim>& scene) const {
-  return {{"kinetic", kinetic_energy(scene) + relative_.kinetic_energy(scene.particles)},
-          {"elastic", stress_.materials().stored_energy(scene.particles)},
-          {"potential", potential_energy(scene)},
-          {"water_compression", pores_.compression_energy(scene.particles)},
-          {"seepage_dissipation", dissipated_}};
+  std::vector<std::pair<std::string, double>> all = {
+      {"kinetic", kinetic_energy(scene) + relative_.kinetic_energy(scene.particles)},
+      {"elastic", stress_.materials().stored_energy(scene.particles)},
+      {"potential", potential_energy(scene)},
+      {"water_compression", pores_.compression_energy(scene.particles)},
+      {"seepage_dissipation", dissipated_}};
+  if (outside_.any()) all.emplace_back("load_work", load_work_);
+  return all;
 }
 
 template <int Dim>

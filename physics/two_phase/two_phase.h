@@ -45,6 +45,7 @@ class TwoPhase final : public PhysicsModule<Dim> {
   void project(Scene<Dim>& scene, double dt, double kick);
   void correct(Scene<Dim>& scene, double kick);
   void gather(Scene<Dim>& scene, double dt);
+  typename PoreWater<Dim>::OutsideSums outside_sums(const Scene<Dim>& scene);
 
   std::vector<TimeStepLimit> limits(const Scene<Dim>& scene, const SafetyFactors& factors) const;
 
@@ -58,9 +59,11 @@ class TwoPhase final : public PhysicsModule<Dim> {
   PressureEquation<Dim> pressure_;
   NodeFields<Dim> wall_;       // forces of the pressure alone, which presses on faces without friction
   std::vector<double> power_;  // dissipated by the flow, by block [W]
-  double dissipated_ = 0;      // [J], since the start
-  double discharge_ = 0;       // of the steady seepage at the start [m3/s]
-  bool placed_ = false;        // the pressure equation knows the blocks
+  std::vector<typename PoreWater<Dim>::OutsideSums> outside_sums_;  // by block
+  double dissipated_ = 0;                                           // [J], since the start
+  double load_work_ = 0;                                            // of the pressures on the surface, likewise
+  double discharge_ = 0;                                            // of the steady seepage at the start [m3/s]
+  bool placed_ = false;                                             // the pressure equation knows the blocks
 };
 
 }  // namespace sluice
