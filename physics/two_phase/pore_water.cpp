@@ -147,7 +147,7 @@ void PoreWater<Dim>::take_outside_pressure(Scene<Dim>& scene, const ParticleBloc
 
 template <int Dim>
 void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
-                                    const ExternalPressure<Dim>& outside) {
+                                    const ExternalPressure<Dim>& outside, ScatterWhat what) {
   Columns& columns = scene.particles.columns;
   ScatterInput<Dim> in = scene.scatter_input(block);
   const double* pressure = columns.data(pressure_);
@@ -165,8 +165,12 @@ void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const Part
       for (std::uint32_t p = block.begin; p < block.end; ++p) total[p] += here[p];
       in.body_force[a] = columns.data(body_force_, a);
     }
+    // Body forces go with the forces alone.
+    if (what == ScatterWhat::momentum_and_force)
+      scene.shape->scatter(ScatterWhat::momentum, in, 0, scene.nodes.momentum_tile(b), nullptr);
+    what = ScatterWhat::force;
   }
-  scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, scene.nodes.force_tile(b));
+  scene.shape->scatter(what, in, 0, scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
 }
 
 template <int Dim>

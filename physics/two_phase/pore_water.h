@@ -46,9 +46,10 @@ class PoreWater {
   /// Which blocks hold water.
   std::vector<char> wet_blocks(const Scene<Dim>& scene) const;
 
-  /// Forces on the nodes from the total stress sigma' - beta p, from outside pressure and its gradient.
+  /// Forces on the nodes from the total stress sigma' - beta p, from outside pressure and its gradient; `what` is
+  /// `force` or `momentum_and_force`.
   void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
-                      const ExternalPressure<Dim>& outside);
+                      const ExternalPressure<Dim>& outside, ScatterWhat what);
 
   /// Particles of a block to its cells and vertices: eq. (45). The nodes have the velocities of the predictor.
   /// `relative` holds the velocities of the water relative to the solid, or nulls where it has no inertia of its own.
