@@ -52,7 +52,7 @@ struct LaggedCholeskyOptions {
   Ordering ordering = Ordering::measured;
   Choice choice = Choice::counted;
   int blas_threads = 1;  ///< as in SparseCholeskyOptions
-  double relative_tolerance = 1e-10;
+  double relative_tolerance = 1e-9;
   int most_iterations = 100;  ///< with a lagged factor; then it is renewed
 };
 
@@ -121,15 +121,34 @@ class LaggedCholesky {
   double measure(SparseCholesky& candidate) const;
   void use(LaggedCholeskyOptions::Ordering ordering, SparseCholesky cholesky);
 
+  /// The matrix by whole rows: for each entry its column, and its place among the values.
+  struct FullRows {
+    struct Entry {
+      int column, slot;
+    };
+    std::vector<int> begin;
+    std::vector<Entry> entry;
+    FullRows() = default;
+    explicit FullRows(const SymmetricPattern& pattern);
+  };
+  /// What norms are made of, before the roots are taken.
+  struct Sums {
+    double plain = 0, scaled = 0, largest = 0;
+  };
+
+  void multiply(std::span<const double> values, std::span<const double> x, std::span<double> y, std::size_t begin,
+                std::size_t end) const;
   bool invert_diagonal(std::span<const double> values);
-  Norms norms(std::span<const double> r) const;
+  Sums sums(std::span<const double> r, std::size_t begin, std::size_t end) const;
+  template <class Body>
+  Norms norms_after(std::span<const double> r, const Body& body);
   /// The largest ratio of a norm of r_ to what is allowed: converged at 1 and below.
-  double distance();
+  double distance() const;
   double update_residual(std::span<const double> values, std::span<const double> b, std::span<const double> x);
 
   Report solve_within(std::span<const double> values, std::span<const double> b, std::span<double> x,
                       double largest_residual);
-  double start(std::span<const double> values, std::span<const double> b, std::span<double> x);
+  double start(std::span<const double> values, std::span<const double> b, const Norms& size, std::span<double> x);
   void factorize(std::span<const double> values);
   Outcome iterate(std::span<const double> values, std::span<const double> b, std::span<double> x, double distance,
                   Preconditioner preconditioner, int& iterations);
@@ -144,6 +163,8 @@ class LaggedCholesky {
   RenewalRule rule_;
   Norms allowed_;  // in the current solve
   Norms norms_;    // of r_
+  FullRows rows_;
+  std::vector<Sums> shares_;
   std::vector<double> inverse_diagonal_, r_, z_, p_, q_;
 };
 

@@ -73,9 +73,15 @@ class PressureEquation {
     std::array<double, Grid::corners> push{};  ///< of each corner [m3/s]
     double storage = 0;                        ///< of each corner
   };
+  /// What the coefficients of all cells have in common in a step.
+  struct StepConstants {
+    double kick, corner_volume_per_dt;
+    std::array<double, Dim> stabilised{};  ///< h^2 / (4 dt), or 0 without stabilisation
+    std::array<double, Dim> softest{};     ///< (50 dt / h)^2
+  };
   /// Couplings of a vertex with those around it.
   struct Row {
-    std::array<double, Grid::stencil> implicit{}, old{};
+    std::array<double, Grid::stencil> implicit, old;
     double storage = 0, push = 0;
   };
   /// A line from a vertex inside to one outside, and where it crosses the surface.
@@ -87,18 +93,22 @@ class PressureEquation {
   bool covered(const Scene<Dim>& scene) const;
   void rebuild(const Scene<Dim>& scene);
   void build(const std::vector<Index<Dim>>& wet_cells);
-  void sum_tiles();
+  void sum_cells();
+  Lane vertex_sum(std::size_t v) const;
   void set_cells(const PressureStep& step);
-  CellState cell_state(const CellSums<Dim>& sums, const PressureStep& step) const;
+  StepConstants constants(const PressureStep& step) const;
+  CellState cell_state(const CellSums<Dim>& sums, const StepConstants& step) const;
   void classify(const PressureStep& step);
   bool on_face(const Index<Dim>& place, int axis, int side) const;
   void assemble(const ExternalPressure<Dim>& outside, const PressureStep& step);
   Row row(const typename Grid::Vertex& vertex) const;
+  bool is_inner(const typename Grid::Vertex& vertex) const;
+  void write_inner_row(std::size_t i, const Row& row);
   void write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside, double time);
   double surface_share(std::size_t inside, std::size_t neighbour) const;
   Crossing crossing(std::size_t inside, std::size_t neighbour, const ExternalPressure<Dim>& outside, double time) const;
   double face_flux(const typename Grid::Vertex& vertex, double time) const;
-  void weigh_lines();
+  double line_weights(std::size_t j) const;
   double continuation(std::size_t i, std::size_t j, std::size_t n) const;
   void extrapolate(const ExternalPressure<Dim>& outside, double time);
   void solve_system(double dt);
@@ -123,7 +133,6 @@ class PressureEquation {
   std::vector<double> fill_;            // by vertex: share of its surroundings that is wet
   std::vector<Kind> kind_;              // by vertex
   std::vector<double> given_;           // by vertex [Pa]
-  std::vector<double> line_weights_;    // by vertex outside: of all lines from vertices inside
   std::vector<double> old_, pressure_;  // by vertex [Pa]
   std::vector<double> values_, right_side_;
   LaggedCholesky::Report report_;
