@@ -149,6 +149,7 @@ typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(cons
   const double lightness = water_.density * specific;  // rho_w / rho
   cell.storage = sums.storage * inverse / step.dt;
   const double compliance = step.stabilised ? sums.compliance * inverse : 0;
+  cell.steadied = compliance > 0 ? 1.5 * step.kick * specific : 0;
   for (int a = 0; a < Dim; ++a) {
     const double h = geometry_.cell[a], mobility = sums.mobility[a] * inverse;
     const double projection = step.kick * specific + mobility * (1 - lightness);
@@ -242,6 +243,7 @@ typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Gr
     const CellState& cell = cells_[static_cast<std::size_t>(vertex.cell[k])];
     const std::size_t m = Grid::corners - 1 - k;
     row.storage += cell.storage * geometry_.cell_volume() / Grid::corners;
+    row.steadied += cell.steadied * geometry_.cell_volume() / Grid::corners;
     for (std::size_t a = 0; a < Dim; ++a) row.push += integrals_.slope[a][m] * cell.push[a];
     for (std::size_t n = 0; n < Grid::corners; ++n) {
       const std::size_t place = neighbour_places<Dim>[m][n];
@@ -252,6 +254,22 @@ typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Gr
     }
   }
   return row;
+}
+
+/// How unevenly particles lie around a vertex inside, eq. (47a): from the slopes of the fill, unless those are the
+/// surface's [1/m2].
+template <int Dim>
+double PressureEquation<Dim>::unevenness(std::size_t i) const {
+  const auto& vertex = grid_.vertices()[i];
+  double sum = 0;
+  for (int a = 0, step = 1; a < Dim; ++a, step *= 3)
+    for (const int side : {-step, step}) {
+      const std::int32_t j = vertex.neighbour[static_cast<std::size_t>(Grid::centre + side)];
+      if (j < 0 || kind_[static_cast<std::size_t>(j)] == Kind::outside) continue;
+      const double slope = (fill_[static_cast<std::size_t>(j)] - fill_[i]) / geometry_.cell[a];
+      sum += 0.5 * slope * slope;
+    }
+  return sum;
 }
 
 /// Where the fill passes one half between two vertices, linearly: the share of the line that is inside.
@@ -301,8 +319,9 @@ template <int Dim>
 void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside,
                                       double time) {
   const auto& vertex = grid_.vertices()[i];
-  double diagonal = row.implicit[Grid::centre] + row.storage;
-  double right = row.push - face_flux(vertex, time) + (row.old[Grid::centre] + row.storage) * old_[i];
+  const double storage = row.storage + (row.steadied > 0 ? row.steadied * unevenness(i) : 0);
+  double diagonal = row.implicit[Grid::centre] + storage;
+  double right = row.push - face_flux(vertex, time) + (row.old[Grid::centre] + storage) * old_[i];
   double expansion = lanes_[i][2];
   bool at_surface = false;
   for (std::size_t n = 0; n < Grid::stencil; ++n) {

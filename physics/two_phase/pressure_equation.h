@@ -89,12 +89,13 @@ class PressureEquation {
     std::array<double, Dim> implicit{};  ///< of the new pressure [m2/(Pa s)]
     std::array<double, Dim> old{};       ///< of the old pressure
     std::array<double, Dim> push{};
-    double storage = 0;  ///< per time [1/(Pa s)]
+    double storage = 0;   ///< per time [1/(Pa s)]
+    double steadied = 0;  ///< 3/2 kick / rho where there is a skeleton, eq. (47a) [m3 s/kg]
   };
   /// Couplings of a vertex with those around it.
   struct Row {
     std::array<double, Grid::stencil> implicit{}, old{};
-    double storage = 0, push = 0;
+    double storage = 0, push = 0, steadied = 0;
   };
   /// A line from a vertex inside to one outside, and where it crosses the surface.
   struct Crossing {
@@ -113,6 +114,7 @@ class PressureEquation {
   void assemble(const ExternalPressure<Dim>& outside, const PressureStep& step);
   Row row(const typename Grid::Vertex& vertex) const;
   void write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside, double time);
+  double unevenness(std::size_t i) const;
   double surface_share(std::size_t inside, std::size_t neighbour) const;
   Crossing crossing(std::size_t inside, std::size_t neighbour, const ExternalPressure<Dim>& outside, double time) const;
   double face_flux(const typename Grid::Vertex& vertex, double time) const;
