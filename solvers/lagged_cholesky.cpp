@@ -29,8 +29,8 @@ constexpr int typical_solves = 10;
 /// An order that takes longer to find than another must save a tenth of the work: it is found anew for every pattern.
 constexpr double saving = 0.9;
 
-/// Loops over unknowns are cut in shares of this many, which threads may take; sums over a share are added up in the order
-/// of the shares, so that the bits do not depend on the number of threads.
+/// Loops over unknowns are cut in shares of this many, which threads may take; sums over a share are added up in the
+/// order of the shares, so that the bits do not depend on the number of threads.
 constexpr std::size_t share_size = 1024;
 /// Loops over fewer unknowns are not worth waking the other threads.
 constexpr std::size_t worth_sharing = 2 * share_size;

@@ -139,7 +139,8 @@ void PackedFactor::divide() {
                       std::vector<float>(trunk_columns_.size())});
     for (std::size_t k = first[b]; k <= b; ++k) {
       const auto rows = row_.begin() + static_cast<std::ptrdiff_t>(blocks_[k].first_row);
-      const auto inner = std::lower_bound(rows, rows + static_cast<std::ptrdiff_t>(blocks_[k].rows), static_cast<int>(end));
+      const auto inner =
+          std::lower_bound(rows, rows + static_cast<std::ptrdiff_t>(blocks_[k].rows), static_cast<int>(end));
       blocks_[k].inner_rows = static_cast<std::size_t>(inner - rows);
     }
   }

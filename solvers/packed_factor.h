@@ -56,7 +56,7 @@ class PackedFactor {
 
   std::vector<Block> blocks_;
   std::vector<Part> parts_;
-  std::vector<std::size_t> trunk_;            // blocks that belong to no part
+  std::vector<std::size_t> trunk_;  // blocks that belong to no part
   std::vector<std::size_t> trunk_columns_;
   std::vector<std::size_t> place_in_trunk_;   // of a column that belongs to no part
   std::vector<float> below_, nothing_above_;  // working memory of the trunk

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-
 namespace sluice {
 
 template <int Dim>
@@ -14,8 +13,8 @@ void CellAverages<Dim>::resize(const Blocks<Dim>& blocks) {
   cell_.resize(particles);
 }
 
-/// The place of the cell of each particle of a block in the block's tile. (Multi-target functions need external linkage:
-/// the linker chooses among their clones.)
+/// The place of the cell of each particle of a block in the block's tile. (Multi-target functions need external
+/// linkage: the linker chooses among their clones.)
 template <int Dim>
 SLUICE_MULTITARGET void place_in_tile(const BlockParticles<Dim>& block, std::int32_t* __restrict place) {
   constexpr int chunk = 64;
@@ -71,7 +70,8 @@ void CellAverages<Dim>::mean(const Blocks<Dim>& blocks, std::size_t number, cons
     const std::int32_t other = around[static_cast<std::size_t>(n)];
     if (other < 0) continue;
     const Sums* tile = tiles_.data() + static_cast<std::size_t>(other) * cell_tile<Dim>;
-    const Reach x(cell_tile_width<Dim>, block_width<Dim>, n % 3 - 1), y(cell_tile_width<Dim>, block_width<Dim>, n / 3 % 3 - 1);
+    const Reach x(cell_tile_width<Dim>, block_width<Dim>, n % 3 - 1),
+        y(cell_tile_width<Dim>, block_width<Dim>, n / 3 % 3 - 1);
     const Reach z(Dim == 3 ? cell_tile_width<Dim> : 1, block_width<Dim>, Dim == 3 ? n / 9 - 1 : 0);
     for (int k = z.low; k < z.high; ++k)
       for (int j = y.low; j < y.high; ++j) {

@@ -112,8 +112,8 @@ class PoreWater {
   const Materials<Dim>& materials_;
   std::unique_ptr<ShapeKernels<Dim>> linear_;
 
-  ColumnId pressure_, pressure_gradient_, porosity_, solid_mass_, inertia_, wet_;         // state
-  ColumnId divergence_, acceleration_, new_pressure_, total_stress_, zero_;              // derived
+  ColumnId pressure_, pressure_gradient_, porosity_, solid_mass_, inertia_, wet_;  // state
+  ColumnId divergence_, acceleration_, new_pressure_, total_stress_, zero_;        // derived
   ColumnId outside_pressure_, body_force_;
 };
 

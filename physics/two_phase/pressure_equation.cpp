@@ -162,6 +162,7 @@ typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(cons
   cell.storage = sums.storage * inverse * step.corner_volume_per_dt;
   // At most as soft as a skeleton in which an elastic wave crosses a fiftieth of a cell.
   const double compliance = sums.compliance * inverse;
+  cell.steadied = compliance > 0 ? inertial * step.steadied : 0;
   for (std::size_t a = 0; a < Dim; ++a) {
     const double mobility = sums.mobility[a] * inverse, push = sums.push[a] * inverse;
     const double projection = inertial + mobility * (1 - lightness);
@@ -183,8 +184,10 @@ typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(cons
 
 template <int Dim>
 typename PressureEquation<Dim>::StepConstants PressureEquation<Dim>::constants(const PressureStep& step) const {
+  const double corner_volume = geometry_.cell_volume() / Grid::corners;
   StepConstants constants{.kick = step.kick,
-                          .corner_volume_per_dt = geometry_.cell_volume() / Grid::corners / step.dt};
+                          .corner_volume_per_dt = corner_volume / step.dt,
+                          .steadied = step.stabilised ? 1.5 * corner_volume : 0};
   for (std::size_t a = 0; a < Dim; ++a) {
     const double h = geometry_.cell[a];
     constants.stabilised[a] = step.stabilised ? h * h / (4 * step.dt) : 0;
@@ -219,8 +222,8 @@ bool PressureEquation<Dim>::on_face(const Index<Dim>& place, int axis, int side)
   return place[axis] == (side == 0 ? 0 : geometry_.cells[axis]);
 }
 
-/// Sums of the vertices, and what they make of them. Inside is a vertex more than half of whose surroundings, in the grid, are wet: on a flat surface, that lies below
-/// it.
+/// Sums of the vertices, and what they make of them. Inside is a vertex more than half of whose surroundings, in the
+/// grid, are wet: on a flat surface, that lies below it.
 template <int Dim>
 void PressureEquation<Dim>::classify(const PressureStep& step) {
   const std::size_t count = grid_.vertices().size();
@@ -289,19 +292,40 @@ typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Gr
             if constexpr (c >= 0) sum += (cell[k]->*kind)[static_cast<std::size_t>(c)];
           }(),
           ...);
-    }(std::make_index_sequence<Grid::corners>());
+    }
+    (std::make_index_sequence<Grid::corners>());
     return sum;
   };
   Row row;
   [&]<std::size_t... n>(std::index_sequence<n...>) {
     ((row.implicit[n] = coupling.template operator()<n>(&CellState::implicit)), ...);
     ((row.old[n] = coupling.template operator()<n>(&CellState::old)), ...);
-  }(std::make_index_sequence<Grid::stencil>());
+  }
+  (std::make_index_sequence<Grid::stencil>());
   for (std::size_t k = 0; k < Grid::corners; ++k) {
     row.storage += cell[k]->storage;
+    row.steadied += cell[k]->steadied;
     row.push += cell[k]->push[Grid::corners - 1 - k];
   }
   return row;
+}
+
+/// How unevenly particles lie around a vertex inside, eq. (47a): from the slopes of the fill, unless those are the
+/// surface's [1/m2].
+template <int Dim>
+double PressureEquation<Dim>::unevenness(std::size_t i) const {
+  const auto& vertex = grid_.vertices()[i];
+  double sum = 0;
+  for (int a = 0, step = 1; a < Dim; ++a, step *= 3) {
+    const double per_cell = 1 / geometry_.cell[a];
+    for (const int side : {-step, step}) {
+      const std::int32_t j = vertex.neighbour[static_cast<std::size_t>(Grid::centre + side)];
+      if (j < 0 || kind_[static_cast<std::size_t>(j)] == Kind::outside) continue;
+      const double slope = (fill_[static_cast<std::size_t>(j)] - fill_[i]) * per_cell;
+      sum += 0.5 * slope * slope;
+    }
+  }
+  return sum;
 }
 
 /// Where the fill passes one half between two vertices, linearly: the share of the line that is inside.
@@ -351,8 +375,9 @@ template <int Dim>
 void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside,
                                       double time) {
   const auto& vertex = grid_.vertices()[i];
-  double diagonal = row.implicit[Grid::centre] + row.storage;
-  double right = row.push - face_flux(vertex, time) + (row.old[Grid::centre] + row.storage) * old_[i];
+  const double storage = row.storage + row.steadied * unevenness(i);
+  double diagonal = row.implicit[Grid::centre] + storage;
+  double right = row.push - face_flux(vertex, time) + (row.old[Grid::centre] + storage) * old_[i];
   double expansion = lanes_[i][2];
   bool at_surface = false;
   for (std::size_t n = 0; n < Grid::stencil; ++n) {
@@ -386,13 +411,14 @@ void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const Exter
 template <int Dim>
 void PressureEquation<Dim>::write_inner_row(std::size_t i, const Row& row) {
   const auto& vertex = grid_.vertices()[i];
-  double right = row.push + row.storage * old_[i];
+  const double storage = row.storage + row.steadied * unevenness(i);
+  double right = row.push + storage * old_[i];
   for (std::size_t n = 0; n < Grid::stencil; ++n)
     right += row.old[n] * old_[static_cast<std::size_t>(vertex.neighbour[n])];
   // The couplings with the vertices behind have places that follow each other.
   double* const values = values_.data() + vertex.slot[Grid::centre];
   for (std::size_t n = Grid::centre; n < Grid::stencil; ++n) values[n - Grid::centre] = row.implicit[n];
-  values[0] += row.storage;
+  values[0] += storage;
   right_side_[i] = right - lanes_[i][2] / fill_[i];
 }
 

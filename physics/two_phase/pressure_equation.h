@@ -72,17 +72,19 @@ class PressureEquation {
     std::array<double, Grid::corners> implicit{}, old{};
     std::array<double, Grid::corners> push{};  ///< of each corner [m3/s]
     double storage = 0;                        ///< of each corner
+    double steadied = 0;  ///< of each corner, per unevenness: 3/2 kick / rho where there is a skeleton, eq. (47a)
   };
   /// What the coefficients of all cells have in common in a step.
   struct StepConstants {
     double kick, corner_volume_per_dt;
+    double steadied;                       ///< 3/2 of the volume of a corner, or 0 without stabilisation
     std::array<double, Dim> stabilised{};  ///< h^2 / (4 dt), or 0 without stabilisation
     std::array<double, Dim> softest{};     ///< (50 dt / h)^2
   };
   /// Couplings of a vertex with those around it.
   struct Row {
     std::array<double, Grid::stencil> implicit, old;
-    double storage = 0, push = 0;
+    double storage = 0, push = 0, steadied = 0;
   };
   /// A line from a vertex inside to one outside, and where it crosses the surface.
   struct Crossing {
@@ -103,6 +105,7 @@ class PressureEquation {
   void assemble(const ExternalPressure<Dim>& outside, const PressureStep& step);
   Row row(const typename Grid::Vertex& vertex) const;
   bool is_inner(const typename Grid::Vertex& vertex) const;
+  double unevenness(std::size_t i) const;
   void write_inner_row(std::size_t i, const Row& row);
   void write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside, double time);
   double surface_share(std::size_t inside, std::size_t neighbour) const;

@@ -211,8 +211,7 @@ void RelativeMotion<Dim>::advance(Sweep<Dim>& sweep, Scene<Dim>& scene, std::vec
   });
   sweep.over_nodes([this, &scene, kick](Items some) {
     const auto timing = scene.clock.time(Stage::nodes);
-    parallel_for(some.within(scene.blocks.node_blocks().size()),
-                 [&](std::size_t b) { advance_nodes(scene, b, kick); });
+    parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) { advance_nodes(scene, b, kick); });
   });
 }
 
@@ -252,8 +251,7 @@ void RelativeMotion<Dim>::advance_nodes(Scene<Dim>& scene, std::size_t b, double
 }
 
 template <int Dim>
-void RelativeMotion<Dim>::compress(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt,
-                                   Items some) {
+void RelativeMotion<Dim>::compress(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt, Items some) {
   Columns& columns = scene.particles.columns;
   double* solid = columns.data(pores_.divergence());
   double* relative = columns.data(relative_divergence_);
