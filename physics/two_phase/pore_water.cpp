@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel/multitarget.h"
+
 namespace sluice {
 
 namespace {
@@ -313,32 +315,44 @@ double PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock
 
 // ---- volumes ----
 
+namespace pore_water {
+
+/// Eq. (50) for consecutive particles of one material; `grains` and `water` are densities. (Multi-target functions need
+/// external linkage: the linker chooses among their clones.)
+SLUICE_MULTITARGET void follow(std::size_t count, double grains, double water, const double* __restrict volume,
+                               const double* __restrict solid, const double* __restrict wet,
+                               double* __restrict porosity, double* __restrict mass, double* __restrict inertia,
+                               bool inertia_follows) {
+  const double per_grains = 1 / grains;
+#pragma GCC ivdep
+  for (std::size_t p = 0; p < count; ++p) {
+    const double n = 1 - solid[p] * per_grains / volume[p];
+    porosity[p] = n;
+    mass[p] = solid[p] + wet[p] * n * water * volume[p];
+  }
+  if (inertia_follows) std::copy_n(mass, count, inertia);
+}
+
+}  // namespace pore_water
+
 template <int Dim>
 void PoreWater<Dim>::follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& block) {
   Columns& columns = scene.particles.columns;
   double* volume = columns.data(scene.particles.volume);
   double* mass = columns.data(scene.particles.mass);
-  double* porosity = columns.data(porosity_);
-  double* inertia = columns.data(inertia_);
-  const double* solid = columns.data(solid_mass_);
-  const double* wet = columns.data(wet_);
-  const bool follows = water_.formulation == Formulation::u_p;
   for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
     const Batch& batch = scene.blocks.batches()[k];
     const auto m = static_cast<std::size_t>(batch.material);
     const PoreSpace& space = spaces_[m];
     const double density = materials_[m].density();
+    const std::uint32_t p = batch.begin;
     if (space.liquid) {
       // Its volume is that of its mass: strains hold errors of the projection, which would add up.
-      for (std::uint32_t p = batch.begin; p < batch.end; ++p) volume[p] = mass[p] / density;
+      for (std::uint32_t q = p; q < batch.end; ++q) volume[q] = mass[q] / density;
     } else if (space.saturated) {
-      const double grains = density / (1 - space.porosity);  // their density
-      for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
-        const double n = 1 - solid[p] / (grains * volume[p]);
-        porosity[p] = n;
-        mass[p] = solid[p] + wet[p] * n * water_.density * volume[p];
-        if (follows) inertia[p] = mass[p];
-      }
+      pore_water::follow(batch.end - p, density / (1 - space.porosity), water_.density, volume + p,
+                         columns.data(solid_mass_) + p, columns.data(wet_) + p, columns.data(porosity_) + p, mass + p,
+                         columns.data(inertia_) + p, water_.formulation == Formulation::u_p);
     }
   }
 }

@@ -93,6 +93,7 @@ void PressureEquation<Dim>::build(const std::vector<Index<Dim>>& wet_cells) {
   grid_.build(wet_cells, geometry_);
   const auto lattice = grid_.places();
   solver_.analyze(grid_.pattern(), nested_dissection<Dim>(lattice));
+  change_.assign(grid_.vertices().size(), 0);
 }
 
 template <int Dim>
@@ -100,6 +101,7 @@ void PressureEquation<Dim>::store(Archive& archive) const {
   auto& cells = archive.integers["pressure_cells"];
   for (const auto& place : built_from_) cells.insert(cells.end(), place.begin(), place.end());
   const auto state = solver_.state();
+  archive.reals["pressure_change"] = change_;
   archive.reals["pressure_factorized"] = state.factorized_values;
   archive.reals["pressure_counters"] = state.counters;
 }
@@ -111,6 +113,7 @@ void PressureEquation<Dim>::restore(const Archive& archive) {
   for (std::size_t i = 0; i < cells.size(); ++i) places[i / Dim][i % Dim] = static_cast<int>(cells[i]);
   if (places.empty()) return;
   build(places);
+  change_ = archive.reals.at("pressure_change");
   solver_.restore({archive.reals.at("pressure_factorized"), archive.reals.at("pressure_counters")});
 }
 
@@ -490,9 +493,11 @@ void PressureEquation<Dim>::solve(Scene<Dim>& scene, const ExternalPressure<Dim>
     assemble(outside, step);
   }
   const auto timing = scene.clock.time(Stage::pressure_solve);
+  // The pressure is guessed to change as it did in the last step.
   for (std::size_t v = 0; v < pressure_.size(); ++v)
-    pressure_[v] = kind_[v] == Kind::inside ? old_[v] : kind_[v] == Kind::given ? given_[v] : 0;
+    pressure_[v] = kind_[v] == Kind::inside ? old_[v] + change_[v] : kind_[v] == Kind::given ? given_[v] : 0;
   solve_system(step.dt);
+  for (std::size_t v = 0; v < pressure_.size(); ++v) change_[v] = kind_[v] == Kind::inside ? pressure_[v] - old_[v] : 0;
   extrapolate(outside, step.time);
 }
 

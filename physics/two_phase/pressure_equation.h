@@ -137,6 +137,7 @@ class PressureEquation {
   std::vector<Kind> kind_;              // by vertex
   std::vector<double> given_;           // by vertex [Pa]
   std::vector<double> old_, pressure_;  // by vertex [Pa]
+  std::vector<double> change_;          // of the pressure in the last step, by vertex [Pa]
   std::vector<double> values_, right_side_;
   LaggedCholesky::Report report_;
 };
