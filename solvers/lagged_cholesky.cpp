@@ -187,16 +187,10 @@ void LaggedCholesky::multiply(std::span<const double> values, std::span<const do
 // Norms
 // ---------------------------------------------------------------------------------------------------------------------
 
-/// False if an entry of the diagonal is not positive: such a matrix is not positive definite.
-bool LaggedCholesky::invert_diagonal(std::span<const double> values) {
+void LaggedCholesky::invert_diagonal(std::span<const double> values, std::size_t begin, std::size_t end) {
   const std::vector<int>& column_begin = cholesky_.pattern().column_begin;
-  bool positive = true;
-  for (std::size_t i = 0; i < inverse_diagonal_.size(); ++i) {
-    const double diagonal = values[static_cast<std::size_t>(column_begin[i])];
-    positive = positive && diagonal > 0;
-    inverse_diagonal_[i] = 1 / diagonal;
-  }
-  return positive;
+  for (std::size_t i = begin; i < end; ++i)
+    inverse_diagonal_[i] = 1 / values[static_cast<std::size_t>(column_begin[i])];
 }
 
 LaggedCholesky::Sums LaggedCholesky::sums(std::span<const double> r, std::size_t begin, std::size_t end) const {
@@ -234,6 +228,10 @@ double LaggedCholesky::distance() const {
   return std::max({norms_.plain / allowed_.plain, norms_.scaled / allowed_.scaled, norms_.largest / allowed_.largest});
 }
 
+bool LaggedCholesky::near_round_off() const {
+  return certain_.plain > allowed_.plain || certain_.scaled > allowed_.scaled || certain_.largest > allowed_.largest;
+}
+
 /// r = b - A x; returns the distance.
 double LaggedCholesky::update_residual(std::span<const double> values, std::span<const double> b,
                                        std::span<const double> x) {
@@ -266,13 +264,18 @@ LaggedCholesky::Report LaggedCholesky::solve(std::span<const double> values, std
 
 LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> values, std::span<const double> b,
                                                     std::span<double> x, double largest_residual) {
-  if (!invert_diagonal(values)) factorize(values);  // which throws, and says why
-  const Norms size = norms_after(b, [](std::size_t, std::size_t) {});
+  const Norms size = norms_after(b, [&](std::size_t begin, std::size_t end) { invert_diagonal(values, begin, end); });
+  // Not so if an entry of the diagonal is not positive: such a matrix is not positive definite.
+  const bool positive = std::ranges::all_of(inverse_diagonal_, [](double inverse) { return inverse > 0; });
+  if (!positive) factorize(values);  // which throws, and says why
   if (size.plain == 0) {
     std::fill(x.begin(), x.end(), 0.0);
     return {};
   }
   const double tolerance = options_.relative_tolerance;
+  // Some hundred times what an iteration or two add to the difference between the residual carried along and b - A x.
+  constexpr double noise = 1e-13;
+  certain_ = {.plain = noise * size.plain, .scaled = noise * size.scaled, .largest = noise * size.largest};
   allowed_ = {.plain = tolerance * size.plain, .scaled = tolerance * size.scaled, .largest = largest_residual};
   Report report;
   double distance = start(values, b, size, x);
@@ -322,7 +325,7 @@ void LaggedCholesky::factorize(std::span<const double> values) {
   {
     const Stopwatch stopwatch(seconds);
     cholesky_.factorize(values);
-    invert_diagonal(values);
+    invert_diagonal(values, 0, inverse_diagonal_.size());
     packed_.copy(cholesky_, inverse_diagonal_);
   }
   statistics_.factorize_seconds += seconds;
@@ -367,6 +370,7 @@ LaggedCholesky::Outcome LaggedCholesky::iterate(std::span<const double> values, 
     last_rho = rho;
     distance = this->distance();
     if (distance <= 1) {
+      if (i <= 2 && !near_round_off()) return Outcome::converged;
       // The residual carried along drifts away from b - A x by round-off.
       distance = update_residual(values, b, x);
       if (distance <= 1) return Outcome::converged;

@@ -92,9 +92,9 @@ class LaggedCholesky {
   ///   ||r|| <= relative_tolerance ||b||,  max |r_i| <= largest_residual,
   ///   ||D^-1/2 r|| <= relative_tolerance ||D^-1/2 b||.
   /// The last, an estimate of the energy norm of the error, does not change with the scale of single unknowns: unknowns
-  /// of small cut cells, whose rows are small, are as accurate as others. All are tested on the residual itself, not on
-  /// the one that conjugate gradients carry along. Throws NotPositiveDefinite; the factor is forgotten then. Allocates
-  /// nothing unless it factorizes.
+  /// of small cut cells, whose rows are small, are as accurate as others. All are tested on the residual itself, or on
+  /// the one that conjugate gradients carry along while round-off cannot tell them apart. Throws NotPositiveDefinite;
+  /// the factor is forgotten then. Allocates nothing unless it factorizes.
   Report solve(std::span<const double> values, std::span<const double> b, std::span<double> x,
                double largest_residual = std::numeric_limits<double>::infinity());
 
@@ -138,12 +138,14 @@ class LaggedCholesky {
 
   void multiply(std::span<const double> values, std::span<const double> x, std::span<double> y, std::size_t begin,
                 std::size_t end) const;
-  bool invert_diagonal(std::span<const double> values);
+  void invert_diagonal(std::span<const double> values, std::size_t begin, std::size_t end);
   Sums sums(std::span<const double> r, std::size_t begin, std::size_t end) const;
   template <class Body>
   Norms norms_after(std::span<const double> r, const Body& body);
   /// The largest ratio of a norm of r_ to what is allowed: converged at 1 and below.
   double distance() const;
+  /// Whether what is allowed is so little that round-off counts.
+  bool near_round_off() const;
   double update_residual(std::span<const double> values, std::span<const double> b, std::span<const double> x);
 
   Report solve_within(std::span<const double> values, std::span<const double> b, std::span<double> x,
@@ -162,6 +164,7 @@ class LaggedCholesky {
   std::vector<double> factorized_values_;  // empty if there is no factor
   RenewalRule rule_;
   Norms allowed_;  // in the current solve
+  Norms certain_;  // of what round-off adds to a residual
   Norms norms_;    // of r_
   FullRows rows_;
   std::vector<Sums> shares_;

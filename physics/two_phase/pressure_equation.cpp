@@ -51,8 +51,10 @@ template <int Dim>
 void PressureEquation<Dim>::prepare(const Scene<Dim>& scene, const std::vector<char>& wet) {
   wet_ = wet;
   const std::size_t blocks = scene.blocks.particle_blocks().size();
-  cell_sums_.resize(blocks * cell_tile<Dim>);
+  // Dry blocks keep their zeros.
+  cell_sums_.assign(blocks * cell_tile<Dim>, {});
   vertex_tiles_.resize(blocks * Grid::vertex_tile);
+  std::fill_n(vertex_tiles_.data(), blocks * Grid::vertex_tile, Lane{});
   if (!grid_.empty()) grid_.locate(scene.blocks);
 }
 
@@ -135,9 +137,7 @@ void PressureEquation<Dim>::sum_cells() {
   sums_.resize(grid_.cells().size());
   parallel_shares(sums_.size(), [&](std::size_t c) {
     CellSums<Dim> sum;
-    for_entries(grid_.cell_entries(c), [&](std::size_t at) {
-      if (is_wet(at / cell_tile<Dim>)) sum.add(cell_sums_[at]);
-    });
+    for_entries(grid_.cell_entries(c), [&](std::size_t at) { sum.add(cell_sums_[at]); });
     sums_[c] = sum;
   });
 }
@@ -145,9 +145,7 @@ void PressureEquation<Dim>::sum_cells() {
 template <int Dim>
 Lane PressureEquation<Dim>::vertex_sum(std::size_t v) const {
   Lane sum{};
-  for_entries(grid_.vertex_entries(v), [&](std::size_t at) {
-    if (is_wet(at / Grid::vertex_tile)) sum += vertex_tiles_.data()[at];
-  });
+  for_entries(grid_.vertex_entries(v), [&](std::size_t at) { sum += vertex_tiles_.data()[at]; });
   return sum;
 }
 
