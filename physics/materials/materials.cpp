@@ -10,10 +10,14 @@ namespace sluice {
 
 template <int Dim>
 Materials<Dim>::Materials(const Case& definition) {
+  double cell = 1;  // of equal volume, where the edges differ
+  for (const double edge : definition.grid.cell) cell *= edge;
+  cell = std::pow(cell, 1.0 / Dim);
   for (const auto& [name, section] : definition.materials) {
     names_.push_back(name);
     sections_.push_back(section);
     materials_.push_back(make_material(section));
+    materials_.back()->set_cell_size(cell);
   }
 }
 
@@ -121,14 +125,14 @@ SLUICE_MULTITARGET bool all_finite(std::size_t n, const std::array<double*, Comp
 template <int Dim>
 StressReport Materials<Dim>::update_stress(Particles& particles, ColumnId inertia, const Blocks<Dim>& blocks,
                                            const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain,
-                                           double dt) const {
+                                           double dt, double time) const {
   Columns& columns = particles.columns;
   StressReport report;
   for (std::uint32_t b = block.first_batch; b < block.last_batch; ++b) {
     const Batch& batch = blocks.batches()[b];
     const std::size_t n = batch.end - batch.begin, offset = batch.begin - block.begin;
     const auto m = static_cast<std::size_t>(batch.material);
-    MaterialBatch<Dim> material_batch{n, dt, {}, {}, {}};
+    MaterialBatch<Dim> material_batch{n, dt, time, {}, {}, {}};
     std::array<const double*, spin_components<Dim>> rotation;
     for (std::size_t c = 0; c < rotation.size(); ++c) rotation[c] = strain.rotation[c] + offset;
     for (int c = 0; c < symmetric_components<Dim>; ++c) {

@@ -32,9 +32,10 @@ class Materials {
   /// Objective stress update of one block, eqs. (22)-(25) of docs/theory.md: rotates the stress with the material
   /// (Jaumann, by the exact rotation of Hughes & Winget 1980), then applies each material's law to its batch; updates
   /// the volumes. `strain` is indexed from 0 at the block's first particle; `inertia` is the column of the mass [kg]
-  /// that elastic waves set in motion, `dt` [s] the time over which the strains came.
+  /// that elastic waves set in motion, `dt` [s] the time over which the strains came, `time` [s] that of the step.
   StressReport update_stress(Particles& particles, ColumnId inertia, const Blocks<Dim>& blocks,
-                             const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain, double dt) const;
+                             const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain, double dt,
+                             double time) const;
 
   /// Elastic energy stored in all particles [J].
   double stored_energy(const Particles& particles) const;

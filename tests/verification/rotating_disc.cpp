@@ -140,7 +140,7 @@ class Turntable {
     StrainIncrements<Dim> increments;
     for (auto& strain : increments.strain) strain = zero_.data();
     for (std::size_t c = 0; c < spin_increment.size(); ++c) increments.rotation[c] = &spin_increment[c];
-    materials_.update_stress(particles_, particles_.mass, blocks_, block_, increments, 1.0);
+    materials_.update_stress(particles_, particles_.mass, blocks_, block_, increments, 1.0, 0.0);
   }
 
   Tensor stress() const {
