@@ -95,6 +95,11 @@ void measure_materials(bool smoke) {
       {"mohr_coulomb", mohr},
       {"mohr_coulomb, cut-off", mohr + ", tension_cutoff: 1 kPa"},
       {"mohr_coulomb, softening", mohr + ", softening: {cohesion: 1 kPa, friction_angle: 20 deg, strain: 2}"},
+      {"von_mises", "model: von_mises, " + soil + "strength: 20 kPa"},
+      {"von_mises, softening",
+       "model: von_mises, " + soil +
+           "strength_ratio: 0.4, minimum_strength: 1 kPa, softening: {sensitivity: 4, strain: 2}"},
+      {"tresca", "model: tresca, " + soil + "strength: 20 kPa"},
       {"linear_elastic", "model: linear_elastic, density: 1800 kg/m3, youngs_modulus: 20 MPa"},
   };
   measure<2>(models, smoke);
