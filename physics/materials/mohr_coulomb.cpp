@@ -70,6 +70,28 @@ MohrCoulomb::MohrCoulomb(double density, const MohrCoulombParameters& parameters
 
 std::vector<ColumnSpec> MohrCoulomb::columns() const { return {equivalent_plastic_strain()}; }
 
+void check_friction(double friction_angle, double cohesion, double dilation_angle, const std::string& what,
+                    const Node& section) {
+  const auto place = [&](const std::string& key) {
+    const Node* const value = section.find(key);
+    return value != nullptr ? value->place : section.place;
+  };
+  if (friction_angle == 0 && cohesion == 0) {
+    throw CaseError(place("cohesion"),
+                    what +
+                        "cohesion and friction_angle are both 0, so the material has no strength at all; "
+                        "one of them must be above 0");
+  }
+  if (dilation_angle > friction_angle) {
+    constexpr double degrees = 180 / std::numbers::pi;
+    throw CaseError(
+        place("dilation_angle"),
+        fmt::format("{}dilation_angle is {:g} deg; it must be at most the friction_angle, {:g} deg, or plastic "
+                    "flow would produce energy",
+                    what, dilation_angle * degrees, friction_angle * degrees));
+  }
+}
+
 void MohrCoulomb::set_cell_size(double h) {
   if (weakening_) weakening_->law.set_cell_size(h);
 }
@@ -144,28 +166,6 @@ const auto schema =
                  "How strengths fall from the peak, which the keys above give, to residual values.",
                  {"none: perfectly plastic"});
 
-/// Throws CaseError if the angles and the cohesion, of which `what` says which they are, make no sense together.
-void check_strength(const MohrCoulombParameters& p, const std::string& what, const Node& section) {
-  const auto place = [&](const std::string& key) {
-    const Node* const value = section.find(key);
-    return value != nullptr ? value->place : section.place;
-  };
-  if (p.friction_angle == 0 && p.cohesion == 0) {
-    throw CaseError(place("cohesion"),
-                    what +
-                        "cohesion and friction_angle are both 0, so the material has no strength at all; "
-                        "one of them must be above 0");
-  }
-  if (p.dilation_angle > p.friction_angle) {
-    constexpr double degrees = 180 / std::numbers::pi;
-    throw CaseError(
-        place("dilation_angle"),
-        fmt::format("{}dilation_angle is {:g} deg; it must be at most the friction_angle, {:g} deg, or plastic "
-                    "flow would produce energy",
-                    what, p.dilation_angle * degrees, p.friction_angle * degrees));
-  }
-}
-
 MohrCoulomb::Weakening weakening_of(const MohrCoulombParameters& peak, const ResidualStrength& keys,
                                     const Node& section) {
   check_softening(keys);
@@ -188,7 +188,7 @@ MohrCoulomb::Weakening weakening_of(const MohrCoulombParameters& peak, const Res
     throw CaseError(keys.place,
                     "softening: nothing falls; give a residual `cohesion`, `friction_angle` or `dilation_angle` below "
                     "that of the peak");
-  check_strength(residual, "softening: residual ", section);
+  check_friction(residual.friction_angle, residual.cohesion, residual.dilation_angle, "softening: residual ", section);
   return {MohrCoulombStrength(residual), Softening(keys)};
 }
 
@@ -199,7 +199,7 @@ std::unique_ptr<Material> make(const Node& section) {
                                       .cohesion = p.cohesion,
                                       .dilation_angle = p.dilation_angle};
   if (p.tension_cutoff) parameters.tension_cutoff = *p.tension_cutoff;
-  check_strength(parameters, "", section);
+  check_friction(p.friction_angle, p.cohesion, p.dilation_angle, "", section);
   std::optional<MohrCoulomb::Weakening> weakening;
   if (p.softening) weakening = weakening_of(parameters, *p.softening, *section.find("softening"));
   return std::make_unique<MohrCoulomb>(p.density, parameters, weakening);

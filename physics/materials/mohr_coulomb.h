@@ -12,6 +12,11 @@
 
 namespace sluice {
 
+/// Throws CaseError if angles [rad] and cohesion make no sense together; `what` says before the keys' names whose they
+/// are. For every model with these three.
+void check_friction(double friction_angle, double cohesion, double dilation_angle, const std::string& what,
+                    const Node& section);
+
 /// Keeps one state variable, `equivalent_plastic_strain`.
 class MohrCoulomb final : public Material {
  public:

@@ -100,6 +100,11 @@ void measure_materials(bool smoke) {
        "model: von_mises, " + soil +
            "strength_ratio: 0.4, minimum_strength: 1 kPa, softening: {sensitivity: 4, strain: 2}"},
       {"tresca", "model: tresca, " + soil + "strength: 20 kPa"},
+      {"drucker_prager", "model: drucker_prager, " + soil + "friction_angle: 30 deg, cohesion: 5 kPa"},
+      {"newtonian", "model: newtonian, density: 1000 kg/m3, bulk_modulus: 2 MPa, viscosity: 1 Pa s"},
+      {"bingham",
+       "model: bingham, density: 1500 kg/m3, bulk_modulus: 2 MPa, shear_modulus: 1 MPa, yield_stress: 1 kPa, "
+       "viscosity: 10 Pa s"},
       {"linear_elastic", "model: linear_elastic, density: 1800 kg/m3, youngs_modulus: 20 MPa"},
   };
   measure<2>(models, smoke);
