@@ -11,7 +11,7 @@ namespace sluice {
 template <int Dim>
 SLUICE_ALWAYS_INLINE void split(double (&stress)[symmetric_components<Dim>][chunk_lanes], double (&mean)[chunk_lanes],
                                 double (&root_j2)[chunk_lanes]) {
-#pragma GCC ivdep
+  SLUICE_LANE_LOOP
   for (int i = 0; i < chunk_lanes; ++i) {
     const double third = (stress[0][i] + stress[1][i] + stress[2][i]) * (1.0 / 3);
     double half = 0, shear = 0;
@@ -29,7 +29,7 @@ SLUICE_ALWAYS_INLINE void split(double (&stress)[symmetric_components<Dim>][chun
 template <int Dim>
 SLUICE_ALWAYS_INLINE void join(double (&deviator)[symmetric_components<Dim>][chunk_lanes],
                                const double (&scale)[chunk_lanes], const double (&mean)[chunk_lanes]) {
-#pragma GCC ivdep
+  SLUICE_LANE_LOOP
   for (int i = 0; i < chunk_lanes; ++i) {
     for (int k = 0; k < 3; ++k) deviator[k][i] = scale[i] * deviator[k][i] + mean[i];
     for (int k = 3; k < symmetric_components<Dim>; ++k) deviator[k][i] *= scale[i];

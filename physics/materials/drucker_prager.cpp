@@ -33,7 +33,7 @@ SLUICE_MULTITARGET void update_drucker_prager(const MaterialBatch<Dim>& batch, c
     elastic_trial<Dim>(chunk, elasticity, stress);
     split<Dim>(stress, mean, root);
     double* const strain = chunk.state[0];
-#pragma GCC ivdep
+    SLUICE_LANE_LOOP
     for (int i = 0; i < chunk_lanes; ++i) {
       const double excess = root[i] + map.slope * mean[i] - map.intercept;
       const double multiplier = excess > 0 ? excess * inverse : 0;

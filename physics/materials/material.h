@@ -57,6 +57,8 @@ class Material {
   virtual std::vector<ColumnSpec> columns() const { return {}; }
   /// The tangent at small strain: sets the wave speed and the elastic equilibrium.
   virtual IsotropicElasticity elasticity() const = 0;
+  /// Of stress that follows the rate of strain explicitly, and therefore limits the step [Pa s].
+  virtual double viscosity() const { return 0; }
   /// Elastic energy per volume [J/m3] at stress xx yy zz xy (yz xz).
   virtual double stored_energy(std::span<const double> stress) const = 0;
 

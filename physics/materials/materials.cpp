@@ -13,6 +13,7 @@ Materials<Dim>::Materials(const Case& definition) {
   double cell = 1;  // of equal volume, where the edges differ
   for (const double edge : definition.grid.cell) cell *= edge;
   cell = std::pow(cell, 1.0 / Dim);
+  smallest_cell_ = *std::ranges::min_element(definition.grid.cell);
   for (const auto& [name, section] : definition.materials) {
     names_.push_back(name);
     sections_.push_back(section);
@@ -150,8 +151,7 @@ StressReport Materials<Dim>::update_stress(Particles& particles, ColumnId inerti
     const auto& e = material_batch.strain_increment;
     const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(inertia) + batch.begin,
                                                      columns.data(particles.volume) + batch.begin);
-    const double modulus = materials_[m]->elasticity().constrained_modulus();
-    report.fastest_wave = std::max(report.fastest_wave, std::sqrt(modulus * volume.largest_specific_volume));
+    report.fastest_wave = std::max(report.fastest_wave, wave(*materials_[m], volume.largest_specific_volume));
     report.sound = report.sound && volume.sound && stress_update::all_finite(n, material_batch.stress);
   }
   return report;
@@ -175,12 +175,16 @@ double Materials<Dim>::fastest_wave(const Particles& particles, ColumnId inertia
   const double* volume = particles.columns.data(particles.volume);
   const double* mass = particles.columns.data(inertia);
   double fastest = 0;
-  for (std::size_t p = 0; p < particles.size(); ++p) {
-    const double modulus =
-        materials_[static_cast<std::size_t>(particles.material[p])]->elasticity().constrained_modulus();
-    fastest = std::max(fastest, modulus * volume[p] / mass[p]);
-  }
-  return std::sqrt(fastest);
+  for (std::size_t p = 0; p < particles.size(); ++p)
+    fastest =
+        std::max(fastest, wave(*materials_[static_cast<std::size_t>(particles.material[p])], volume[p] / mass[p]));
+  return fastest;
+}
+
+template <int Dim>
+double Materials<Dim>::wave(const Material& material, double specific_volume) const {
+  return std::sqrt(material.elasticity().constrained_modulus() * specific_volume) +
+         8.0 / 3 * Dim * material.viscosity() * specific_volume / smallest_cell_;
 }
 
 template <int Dim>

@@ -13,7 +13,7 @@ namespace sluice {
 
 /// What the stress update of a block found.
 struct StressReport {
-  double fastest_wave = 0;  ///< largest sqrt(M V / inertia) [m/s]
+  double fastest_wave = 0;  ///< see Materials::fastest_wave [m/s]
   bool sound = true;        ///< no particle is inverted and all stresses are finite
 };
 
@@ -39,10 +39,14 @@ class Materials {
 
   /// Elastic energy stored in all particles [J].
   double stored_energy(const Particles& particles) const;
-  /// Largest sqrt(M V / inertia) over all particles [m/s].
+  /// Largest sqrt(M V / inertia) over all particles, plus what explicit viscosity adds (27a) [m/s].
   double fastest_wave(const Particles& particles, ColumnId inertia) const;
 
  private:
+  /// (27a), of volume over inertia [m3/kg].
+  double wave(const Material& material, double specific_volume) const;
+
+  double smallest_cell_;  // [m]
   std::vector<std::string> names_;
   std::vector<Node> sections_;
   std::vector<std::unique_ptr<Material>> materials_;

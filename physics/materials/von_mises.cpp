@@ -21,7 +21,7 @@ SLUICE_MULTITARGET void update_von_mises(const MaterialBatch<Dim>& batch, const 
     elastic_trial<Dim>(chunk, elasticity, stress);
     split<Dim>(stress, mean, root_j2);
     double* const strain = chunk.state[0];
-#pragma GCC ivdep
+    SLUICE_LANE_LOOP
     for (int i = 0; i < chunk_lanes; ++i) {
       const double q = root3 * root_j2[i];
       const double peak = root3 * strength.template peak<Dim>(chunk, i), drop = peak * (1 - strength.residual_share);

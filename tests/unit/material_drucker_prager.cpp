@@ -83,7 +83,8 @@ PathPoints<2> after(const Material& material, double volume, double shear) {
   return point;
 }
 
-// Each region by its own closed form: elastic, cone, the edge of cone and cut-off, cut-off alone, apex. 1e-12 of 1e6 Pa.
+// Each region by its own closed form: elastic, cone, the edge of cone and cut-off, cut-off alone, apex. 1e-12 of 1e6
+// Pa.
 TEST(DruckerPrager, EveryRegionOfTheReturn) {
   const std::string keys = sand + ", dilation_angle: 10 deg, matching: inscribed";
   const auto material = material_of(keys), cut = material_of(keys + ", tension_cutoff: 2 kPa");
@@ -110,8 +111,8 @@ TEST(DruckerPrager, EveryRegionOfTheReturn) {
   EXPECT_NEAR(root(edge), intercept - slope * 2e3, 1e-6);
 
   std::tie(mean, j) = trial(0.0138, 1e-5);  // a mean just beyond 2 kPa, hardly a deviator: it stays
-  const auto cap = after(*material_of(soil + "friction_angle: 35 deg, cohesion: 20 kPa, tension_cutoff: 2 kPa"),
-                         0.0138, 1e-5);
+  const auto cap =
+      after(*material_of(soil + "friction_angle: 35 deg, cohesion: 20 kPa, tension_cutoff: 2 kPa"), 0.0138, 1e-5);
   EXPECT_GT(mean, 2e3);
   EXPECT_NEAR(cap.mean(0), 2e3, 1e-6);
   EXPECT_NEAR(root(cap), j, 1e-6);
