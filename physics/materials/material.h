@@ -55,8 +55,14 @@ class Material {
   /// gets the point, at the start or by a change of material: a law that remembers the stress of that moment sets then
   /// what it finds to be 0.
   virtual std::vector<ColumnSpec> columns() const { return {}; }
-  /// The tangent at small strain: sets the wave speed and the elastic equilibrium.
+  /// The tangent at small strain, for the elastic equilibrium and, unless constrained_modulus says otherwise, for the
+  /// wave speed.
   virtual IsotropicElasticity elasticity() const = 0;
+  /// The largest lambda + 2 G [Pa] at the stresses of `size` points, columns xx yy zz xy (yz xz): for a law whose
+  /// stiffness depends on its stress.
+  virtual double constrained_modulus(std::span<const double* const> /*stress*/, std::size_t /*size*/) const {
+    return elasticity().constrained_modulus();
+  }
   /// Of stress that follows the rate of strain explicitly, and therefore limits the step [Pa s].
   virtual double viscosity() const { return 0; }
   /// Elastic energy per volume [J/m3] at stress xx yy zz xy (yz xz).

@@ -151,7 +151,11 @@ StressReport Materials<Dim>::update_stress(Particles& particles, ColumnId inerti
     const auto& e = material_batch.strain_increment;
     const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(inertia) + batch.begin,
                                                      columns.data(particles.volume) + batch.begin);
-    report.fastest_wave = std::max(report.fastest_wave, wave(*materials_[m], volume.largest_specific_volume));
+    std::array<const double*, symmetric_components<Dim>> stress;
+    std::ranges::copy(material_batch.stress, stress.begin());
+    report.fastest_wave =
+        std::max(report.fastest_wave,
+                 wave(*materials_[m], materials_[m]->constrained_modulus(stress, n), volume.largest_specific_volume));
     report.sound = report.sound && volume.sound && stress_update::all_finite(n, material_batch.stress);
   }
   return report;
@@ -175,16 +179,19 @@ double Materials<Dim>::fastest_wave(const Particles& particles, ColumnId inertia
   const double* volume = particles.columns.data(particles.volume);
   const double* mass = particles.columns.data(inertia);
   double fastest = 0;
-  for (std::size_t p = 0; p < particles.size(); ++p)
-    fastest =
-        std::max(fastest, wave(*materials_[static_cast<std::size_t>(particles.material[p])], volume[p] / mass[p]));
+  std::array<const double*, symmetric_components<Dim>> stress;
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const Material& material = *materials_[static_cast<std::size_t>(particles.material[p])];
+    for (std::size_t c = 0; c < stress.size(); ++c)
+      stress[c] = particles.columns.data(particles.stress, static_cast<int>(c)) + p;
+    fastest = std::max(fastest, wave(material, material.constrained_modulus(stress, 1), volume[p] / mass[p]));
+  }
   return fastest;
 }
 
 template <int Dim>
-double Materials<Dim>::wave(const Material& material, double specific_volume) const {
-  return std::sqrt(material.elasticity().constrained_modulus() * specific_volume) +
-         8.0 / 3 * Dim * material.viscosity() * specific_volume / smallest_cell_;
+double Materials<Dim>::wave(const Material& material, double modulus, double specific_volume) const {
+  return std::sqrt(modulus * specific_volume) + 8.0 / 3 * Dim * material.viscosity() * specific_volume / smallest_cell_;
 }
 
 template <int Dim>

@@ -43,8 +43,8 @@ class Materials {
   double fastest_wave(const Particles& particles, ColumnId inertia) const;
 
  private:
-  /// (27a), of volume over inertia [m3/kg].
-  double wave(const Material& material, double specific_volume) const;
+  /// (27a), with the constrained modulus [Pa] and of volume over inertia [m3/kg].
+  double wave(const Material& material, double modulus, double specific_volume) const;
 
   double smallest_cell_;  // [m]
   std::vector<std::string> names_;

@@ -105,6 +105,9 @@ void measure_materials(bool smoke) {
       {"bingham",
        "model: bingham, density: 1500 kg/m3, bulk_modulus: 2 MPa, shear_modulus: 1 MPa, yield_stress: 1 kPa, "
        "viscosity: 10 Pa s"},
+      {"modified_cam_clay",
+       "model: modified_cam_clay, density: 1500 kg/m3, critical_stress_ratio: 1, lambda: 0.2, kappa: 0.04, "
+       "initial_void_ratio: 1, overconsolidation_ratio: 1.5"},
       {"linear_elastic", "model: linear_elastic, density: 1800 kg/m3, youngs_modulus: 20 MPa"},
   };
   measure<2>(models, smoke);
