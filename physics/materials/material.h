@@ -58,6 +58,9 @@ class Material {
   /// The tangent at small strain, for the elastic equilibrium and, unless constrained_modulus says otherwise, for the
   /// wave speed.
   virtual IsotropicElasticity elasticity() const = 0;
+  /// Its elasticity is linear, isotropic and that of elasticity(), and the law knows strain through it alone: then it
+  /// may as well be elasticity in logarithmic strain, of Kirchhoff stress (`scheme.strain: hencky`).
+  virtual bool linear_elasticity() const { return false; }
   /// The largest lambda + 2 G [Pa] at the stresses of `size` points, columns xx yy zz xy (yz xz): for a law whose
   /// stiffness depends on its stress.
   virtual double constrained_modulus(std::span<const double* const> /*stress*/, std::size_t /*size*/) const {

@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "core/parallel/multitarget.h"
+#include "physics/materials/hencky.h"
 
 namespace sluice {
 
@@ -14,16 +17,25 @@ Materials<Dim>::Materials(const Case& definition) {
   for (const double edge : definition.grid.cell) cell *= edge;
   cell = std::pow(cell, 1.0 / Dim);
   smallest_cell_ = *std::ranges::min_element(definition.grid.cell);
+  hencky_ = definition.scheme.strain == "hencky";
   for (const auto& [name, section] : definition.materials) {
     names_.push_back(name);
     sections_.push_back(section);
     materials_.push_back(make_material(section));
     materials_.back()->set_cell_size(cell);
+    if (hencky_ && !materials_.back()->linear_elasticity())
+      throw CaseError(section.find("model")->place,
+                      fmt::format("material '{}': `scheme.strain: hencky` needs a model with linear elasticity, and {} "
+                                  "is none; take `strain: jaumann`",
+                                  name, section.find("model")->scalar));
   }
 }
 
 template <int Dim>
 void Materials<Dim>::declare(Columns& particles) {
+  if (hencky_)
+    initial_volume_ = particles.declare({"initial_volume", "m3", 1, Role::state,
+                                         "Volume before the first step, per metre of thickness in 2-D.", false});
   for (const auto& material : materials_) {
     auto& ids = state_.emplace_back();
     auto& components = components_.emplace_back();
@@ -146,11 +158,20 @@ StressReport Materials<Dim>::update_stress(Particles& particles, ColumnId inerti
       for (int c = 0; c < components_[m][s]; ++c) state[components++] = columns.data(state_[m][s], c) + batch.begin;
     material_batch.state = {state.data(), components};
 
-    stress_update::rotate(n, material_batch.stress, rotation);
+    double* const volumes = columns.data(particles.volume) + batch.begin;
+    double* const initial_volumes = hencky_ ? columns.data(initial_volume_) + batch.begin : nullptr;
+    if (hencky_) {
+      auto increments = strain.strain;
+      for (double*& component : increments) component += offset;
+      hencky::begin(n, material_batch.stress, increments, rotation, volumes, initial_volumes,
+                    materials_[m]->elasticity());
+    } else {
+      stress_update::rotate(n, material_batch.stress, rotation);
+    }
     materials_[m]->update(material_batch);
     const auto& e = material_batch.strain_increment;
-    const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(inertia) + batch.begin,
-                                                     columns.data(particles.volume) + batch.begin);
+    const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(inertia) + batch.begin, volumes);
+    if (hencky_) hencky::end(n, material_batch.stress, volumes, initial_volumes);
     std::array<const double*, symmetric_components<Dim>> stress;
     std::ranges::copy(material_batch.stress, stress.begin());
     report.fastest_wave =
@@ -165,11 +186,17 @@ template <int Dim>
 double Materials<Dim>::stored_energy(const Particles& particles) const {
   const Columns& columns = particles.columns;
   const double* volume = columns.data(particles.volume);
+  const double* initial = hencky_ ? columns.data(initial_volume_) : nullptr;
   double sum = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
     std::array<double, symmetric_components<Dim>> stress;
     for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = columns.data(particles.stress, static_cast<int>(c))[p];
-    sum += volume[p] * materials_[static_cast<std::size_t>(particles.material[p])]->stored_energy(stress);
+    double counted = volume[p];
+    if (initial != nullptr && initial[p] > 0) {  // tau, per initial volume
+      for (double& component : stress) component *= volume[p] / initial[p];
+      counted = initial[p];
+    }
+    sum += counted * materials_[static_cast<std::size_t>(particles.material[p])]->stored_energy(stress);
   }
   return sum;
 }

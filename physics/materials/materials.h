@@ -30,9 +30,10 @@ class Materials {
   void declare(Columns& particles);
 
   /// Objective stress update of one block, eqs. (22)-(25) of docs/theory.md: rotates the stress with the material
-  /// (Jaumann, by the exact rotation of Hughes & Winget 1980), then applies each material's law to its batch; updates
-  /// the volumes. `strain` is indexed from 0 at the block's first particle; `inertia` is the column of the mass [kg]
-  /// that elastic waves set in motion, `dt` [s] the time over which the strains came, `time` [s] that of the step.
+  /// (Jaumann, by the exact rotation of Hughes & Winget 1980), or finds the logarithmic strain of the step (`strain:
+  /// hencky`, which overwrites the increments); then applies each material's law to its batch; updates the volumes.
+  /// `strain` is indexed from 0 at the block's first particle; `inertia` is the column of the mass [kg] that elastic
+  /// waves set in motion, `dt` [s] the time over which the strains came, `time` [s] that of the step.
   StressReport update_stress(Particles& particles, ColumnId inertia, const Blocks<Dim>& blocks,
                              const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain, double dt,
                              double time) const;
@@ -46,7 +47,9 @@ class Materials {
   /// (27a), with the constrained modulus [Pa] and of volume over inertia [m3/kg].
   double wave(const Material& material, double modulus, double specific_volume) const;
 
-  double smallest_cell_;  // [m]
+  double smallest_cell_;     // [m]
+  bool hencky_ = false;      // elasticity in logarithmic strain
+  ColumnId initial_volume_;  // with it
   std::vector<std::string> names_;
   std::vector<Node> sections_;
   std::vector<std::unique_ptr<Material>> materials_;

@@ -59,6 +59,7 @@ class UndrainedMaterial : public Material {
   double density() const override { return keys_.density; }
   std::vector<ColumnSpec> columns() const override;
   IsotropicElasticity elasticity() const override { return elasticity_; }
+  bool linear_elasticity() const override { return true; }
   double stored_energy(std::span<const double> stress) const override { return elasticity_.energy(stress); }
   /// Throws CaseError if the softening would be steeper than elastic unloading.
   void set_cell_size(double h) override;
