@@ -153,6 +153,7 @@ class Turntable {
  private:
   static Case definition() {
     Case c;
+    c.grid.cell.assign(Dim, 1.0);
     c.materials.emplace_back(
         "soil", read_yaml_text("{model: linear_elastic, density: 1000 kg/m3, youngs_modulus: 1 MPa}", "soil"));
     return c;
