@@ -50,6 +50,7 @@ struct SchemeCase {
   std::string transfer = "apic";
   double flip_fraction = 1;  ///< share of FLIP in the FLIP/PIC blend; 1 is pure FLIP, 0 is pure PIC
   std::string stress_update = "usl";
+  std::string strain = "jaumann";         ///< how stress follows large strain: jaumann or hencky
   bool f_bar = false;                     ///< volumetric strain increments averaged over cells
   std::optional<double> fixed_time_step;  ///< [s]; absent: computed every step
   double courant = 0.5;                   ///< wave limit: courant * h / (c + |v|)

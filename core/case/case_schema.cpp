@@ -346,6 +346,11 @@ Schema<SchemeCase> scheme_schema() {
       .word("stress_update", &S::stress_update, {"usf", "usl", "musl"},
             "When the stress is updated: first in the step, last, or last with velocities mapped a second time.",
             defaults.stress_update)
+      .word("strain", &S::strain, {"jaumann", "hencky"},
+            "How stress follows large strain: elasticity in rate form, turned with the material; or in logarithmic "
+            "strain, "
+            "for materials whose elasticity is linear.",
+            defaults.strain)
       .boolean("f_bar", &S::f_bar, "Average volumetric strain increments over cells, against volumetric locking.",
                defaults.f_bar)
       .custom({.name = "time_step",

@@ -16,6 +16,10 @@ namespace sluice {
 /// Lanes of a chunk: a multiple of every vector length, and little enough to stay in the first cache.
 inline constexpr int chunk_lanes = 16;
 
+/// Before a loop over lanes: lanes are independent, and the loop stays a loop. Unrolled whole, the compiler may
+/// contract a product and a sum in one lane and not in another, and a point's last bit would depend on its place.
+#define SLUICE_LANE_LOOP _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
+
 /// Components of strain, stress and state of `chunk_lanes` points; see MaterialBatch.
 template <int Dim, int States>
 struct Chunk {

@@ -14,6 +14,7 @@ class LinearElastic final : public Material {
 
   double density() const override { return density_; }
   IsotropicElasticity elasticity() const override { return elasticity_; }
+  bool linear_elasticity() const override { return true; }
   double stored_energy(std::span<const double> stress) const override { return elasticity_.energy(stress); }
   void update(const MaterialBatch<2>& batch) const override;
   void update(const MaterialBatch<3>& batch) const override;

@@ -16,6 +16,12 @@ double IsotropicElasticity::energy(std::span<const double> stress) const {
   return deviator / (4 * shear) + mean * mean / (2 * bulk);  // (LE.3)
 }
 
+ColumnSpec equivalent_plastic_strain() {
+  return {.name = "equivalent_plastic_strain",
+          .unit = "1",
+          .sentence = "Accumulated equivalent plastic deviatoric strain, sum of sqrt(2/3 de_p:de_p)."};
+}
+
 Registry<MaterialFactory>& material_registry() {
   static Registry<MaterialFactory> registry("material", "materials");
   return registry;

@@ -21,7 +21,8 @@ namespace sluice {
 template <int Dim>
 struct MaterialBatch {
   std::size_t size = 0;
-  double dt = 0;  ///< time over which the strain increments came [s]; 0 before the first step
+  double dt = 0;    ///< time over which the strain increments came [s]; 0 before the first step
+  double time = 0;  ///< at the beginning of the step [s]
   /// Strain increment of the step; in 2-D the zz entry is zero.
   std::array<const double*, symmetric_components<Dim>> strain_increment;
   /// In: Cauchy stress [Pa] at the beginning of the step, already rotated with the material (Jaumann). Out: updated.
@@ -48,16 +49,34 @@ class Material {
   virtual double density() const = 0;
   /// A liquid: has no skeleton, and its pressure belongs to the physics module.
   virtual bool liquid() const { return false; }
-  /// State variables that this model keeps on each of its points, beside the stress.
+  /// The size of the cells [m], for a law that depends on it. Called once, before the first update.
+  virtual void set_cell_size(double /*h*/) {}
+  /// State variables that this model keeps on each of its points, beside the stress. They are 0 until the model first
+  /// gets the point, at the start or by a change of material: a law that remembers the stress of that moment sets then
+  /// what it finds to be 0.
   virtual std::vector<ColumnSpec> columns() const { return {}; }
-  /// The tangent at small strain: sets the wave speed and the elastic equilibrium.
+  /// The tangent at small strain, for the elastic equilibrium and, unless constrained_modulus says otherwise, for the
+  /// wave speed.
   virtual IsotropicElasticity elasticity() const = 0;
+  /// Its elasticity is linear, isotropic and that of elasticity(), and the law knows strain through it alone: then it
+  /// may as well be elasticity in logarithmic strain, of Kirchhoff stress (`scheme.strain: hencky`).
+  virtual bool linear_elasticity() const { return false; }
+  /// The largest lambda + 2 G [Pa] at the stresses of `size` points, columns xx yy zz xy (yz xz): for a law whose
+  /// stiffness depends on its stress.
+  virtual double constrained_modulus(std::span<const double* const> /*stress*/, std::size_t /*size*/) const {
+    return elasticity().constrained_modulus();
+  }
+  /// Of stress that follows the rate of strain explicitly, and therefore limits the step [Pa s].
+  virtual double viscosity() const { return 0; }
   /// Elastic energy per volume [J/m3] at stress xx yy zz xy (yz xz).
   virtual double stored_energy(std::span<const double> stress) const = 0;
 
   virtual void update(const MaterialBatch<2>& batch) const = 0;
   virtual void update(const MaterialBatch<3>& batch) const = 0;
 };
+
+/// The column that models of plasticity share, and that pictures show.
+ColumnSpec equivalent_plastic_strain();
 
 /// Makes a material from its section of the case file (the map under `materials: NAME:`).
 using MaterialFactory = std::function<std::unique_ptr<Material>(const Node& section)>;

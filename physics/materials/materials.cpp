@@ -4,21 +4,38 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "core/parallel/multitarget.h"
+#include "physics/materials/hencky.h"
 
 namespace sluice {
 
 template <int Dim>
 Materials<Dim>::Materials(const Case& definition) {
+  double cell = 1;  // of equal volume, where the edges differ
+  for (const double edge : definition.grid.cell) cell *= edge;
+  cell = std::pow(cell, 1.0 / Dim);
+  smallest_cell_ = *std::ranges::min_element(definition.grid.cell);
+  hencky_ = definition.scheme.strain == "hencky";
   for (const auto& [name, section] : definition.materials) {
     names_.push_back(name);
     sections_.push_back(section);
     materials_.push_back(make_material(section));
+    materials_.back()->set_cell_size(cell);
+    if (hencky_ && !materials_.back()->linear_elasticity())
+      throw CaseError(section.find("model")->place,
+                      fmt::format("material '{}': `scheme.strain: hencky` needs a model with linear elasticity, and {} "
+                                  "is none; take `strain: jaumann`",
+                                  name, section.find("model")->scalar));
   }
 }
 
 template <int Dim>
 void Materials<Dim>::declare(Columns& particles) {
+  if (hencky_)
+    initial_volume_ = particles.declare({"initial_volume", "m3", 1, Role::state,
+                                         "Volume before the first step, per metre of thickness in 2-D.", false});
   for (const auto& material : materials_) {
     auto& ids = state_.emplace_back();
     auto& components = components_.emplace_back();
@@ -121,14 +138,14 @@ SLUICE_MULTITARGET bool all_finite(std::size_t n, const std::array<double*, Comp
 template <int Dim>
 StressReport Materials<Dim>::update_stress(Particles& particles, ColumnId inertia, const Blocks<Dim>& blocks,
                                            const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain,
-                                           double dt) const {
+                                           double dt, double time) const {
   Columns& columns = particles.columns;
   StressReport report;
   for (std::uint32_t b = block.first_batch; b < block.last_batch; ++b) {
     const Batch& batch = blocks.batches()[b];
     const std::size_t n = batch.end - batch.begin, offset = batch.begin - block.begin;
     const auto m = static_cast<std::size_t>(batch.material);
-    MaterialBatch<Dim> material_batch{n, dt, {}, {}, {}};
+    MaterialBatch<Dim> material_batch{n, dt, time, {}, {}, {}};
     std::array<const double*, spin_components<Dim>> rotation;
     for (std::size_t c = 0; c < rotation.size(); ++c) rotation[c] = strain.rotation[c] + offset;
     for (int c = 0; c < symmetric_components<Dim>; ++c) {
@@ -141,13 +158,25 @@ StressReport Materials<Dim>::update_stress(Particles& particles, ColumnId inerti
       for (int c = 0; c < components_[m][s]; ++c) state[components++] = columns.data(state_[m][s], c) + batch.begin;
     material_batch.state = {state.data(), components};
 
-    stress_update::rotate(n, material_batch.stress, rotation);
+    double* const volumes = columns.data(particles.volume) + batch.begin;
+    double* const initial_volumes = hencky_ ? columns.data(initial_volume_) + batch.begin : nullptr;
+    if (hencky_) {
+      auto increments = strain.strain;
+      for (double*& component : increments) component += offset;
+      hencky::begin(n, material_batch.stress, increments, rotation, volumes, initial_volumes,
+                    materials_[m]->elasticity());
+    } else {
+      stress_update::rotate(n, material_batch.stress, rotation);
+    }
     materials_[m]->update(material_batch);
     const auto& e = material_batch.strain_increment;
-    const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(inertia) + batch.begin,
-                                                     columns.data(particles.volume) + batch.begin);
-    const double modulus = materials_[m]->elasticity().constrained_modulus();
-    report.fastest_wave = std::max(report.fastest_wave, std::sqrt(modulus * volume.largest_specific_volume));
+    const auto volume = stress_update::update_volume(n, e[0], e[1], e[2], columns.data(inertia) + batch.begin, volumes);
+    if (hencky_) hencky::end(n, material_batch.stress, volumes, initial_volumes);
+    std::array<const double*, symmetric_components<Dim>> stress;
+    std::ranges::copy(material_batch.stress, stress.begin());
+    report.fastest_wave =
+        std::max(report.fastest_wave,
+                 wave(*materials_[m], materials_[m]->constrained_modulus(stress, n), volume.largest_specific_volume));
     report.sound = report.sound && volume.sound && stress_update::all_finite(n, material_batch.stress);
   }
   return report;
@@ -157,11 +186,17 @@ template <int Dim>
 double Materials<Dim>::stored_energy(const Particles& particles) const {
   const Columns& columns = particles.columns;
   const double* volume = columns.data(particles.volume);
+  const double* initial = hencky_ ? columns.data(initial_volume_) : nullptr;
   double sum = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
     std::array<double, symmetric_components<Dim>> stress;
     for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = columns.data(particles.stress, static_cast<int>(c))[p];
-    sum += volume[p] * materials_[static_cast<std::size_t>(particles.material[p])]->stored_energy(stress);
+    double counted = volume[p];
+    if (initial != nullptr && initial[p] > 0) {  // tau, per initial volume
+      for (double& component : stress) component *= volume[p] / initial[p];
+      counted = initial[p];
+    }
+    sum += counted * materials_[static_cast<std::size_t>(particles.material[p])]->stored_energy(stress);
   }
   return sum;
 }
@@ -171,12 +206,19 @@ double Materials<Dim>::fastest_wave(const Particles& particles, ColumnId inertia
   const double* volume = particles.columns.data(particles.volume);
   const double* mass = particles.columns.data(inertia);
   double fastest = 0;
+  std::array<const double*, symmetric_components<Dim>> stress;
   for (std::size_t p = 0; p < particles.size(); ++p) {
-    const double modulus =
-        materials_[static_cast<std::size_t>(particles.material[p])]->elasticity().constrained_modulus();
-    fastest = std::max(fastest, modulus * volume[p] / mass[p]);
+    const Material& material = *materials_[static_cast<std::size_t>(particles.material[p])];
+    for (std::size_t c = 0; c < stress.size(); ++c)
+      stress[c] = particles.columns.data(particles.stress, static_cast<int>(c)) + p;
+    fastest = std::max(fastest, wave(material, material.constrained_modulus(stress, 1), volume[p] / mass[p]));
   }
-  return std::sqrt(fastest);
+  return fastest;
+}
+
+template <int Dim>
+double Materials<Dim>::wave(const Material& material, double modulus, double specific_volume) const {
+  return std::sqrt(modulus * specific_volume) + 8.0 / 3 * Dim * material.viscosity() * specific_volume / smallest_cell_;
 }
 
 template <int Dim>

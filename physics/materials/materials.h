@@ -13,7 +13,7 @@ namespace sluice {
 
 /// What the stress update of a block found.
 struct StressReport {
-  double fastest_wave = 0;  ///< largest sqrt(M V / inertia) [m/s]
+  double fastest_wave = 0;  ///< see Materials::fastest_wave [m/s]
   bool sound = true;        ///< no particle is inverted and all stresses are finite
 };
 
@@ -30,18 +30,26 @@ class Materials {
   void declare(Columns& particles);
 
   /// Objective stress update of one block, eqs. (22)-(25) of docs/theory.md: rotates the stress with the material
-  /// (Jaumann, by the exact rotation of Hughes & Winget 1980), then applies each material's law to its batch; updates
-  /// the volumes. `strain` is indexed from 0 at the block's first particle; `inertia` is the column of the mass [kg]
-  /// that elastic waves set in motion, `dt` [s] the time over which the strains came.
+  /// (Jaumann, by the exact rotation of Hughes & Winget 1980), or finds the logarithmic strain of the step (`strain:
+  /// hencky`, which overwrites the increments); then applies each material's law to its batch; updates the volumes.
+  /// `strain` is indexed from 0 at the block's first particle; `inertia` is the column of the mass [kg] that elastic
+  /// waves set in motion, `dt` [s] the time over which the strains came, `time` [s] that of the step.
   StressReport update_stress(Particles& particles, ColumnId inertia, const Blocks<Dim>& blocks,
-                             const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain, double dt) const;
+                             const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain, double dt,
+                             double time) const;
 
   /// Elastic energy stored in all particles [J].
   double stored_energy(const Particles& particles) const;
-  /// Largest sqrt(M V / inertia) over all particles [m/s].
+  /// Largest sqrt(M V / inertia) over all particles, plus what explicit viscosity adds (27a) [m/s].
   double fastest_wave(const Particles& particles, ColumnId inertia) const;
 
  private:
+  /// (27a), with the constrained modulus [Pa] and of volume over inertia [m3/kg].
+  double wave(const Material& material, double modulus, double specific_volume) const;
+
+  double smallest_cell_;     // [m]
+  bool hencky_ = false;      // elasticity in logarithmic strain
+  ColumnId initial_volume_;  // with it
   std::vector<std::string> names_;
   std::vector<Node> sections_;
   std::vector<std::unique_ptr<Material>> materials_;

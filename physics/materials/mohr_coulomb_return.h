@@ -27,9 +27,22 @@ struct PrincipalStress {
   double s1, s2, s3;
 };
 
-/// The constants of the return, worked out once a material.
+/// Strength and flow in the form that the return asks for, which softening interpolates (SO.1).
+struct MohrCoulombStrength {
+  explicit MohrCoulombStrength(const MohrCoulombParameters& parameters);
+  SLUICE_ALWAYS_INLINE MohrCoulombStrength(double sin_friction_, double strength_, double sin_dilation_)
+      : sin_friction(sin_friction_), strength(strength_), sin_dilation(sin_dilation_) {}
+
+  double sin_friction;
+  double strength;  ///< 2 c cos(phi)
+  double sin_dilation;
+};
+
+/// The constants of the return: worked out once a material, or once a point where strengths differ from point to point.
 struct MohrCoulombReturn {
   explicit MohrCoulombReturn(const MohrCoulombParameters& parameters);
+  SLUICE_ALWAYS_INLINE MohrCoulombReturn(IsotropicElasticity elasticity, MohrCoulombStrength strengths,
+                                         double tension_cutoff);
 
   double sin_friction;
   double strength;   ///< 2 c cos(phi)
@@ -61,6 +74,43 @@ struct MohrCoulombReturn {
   /// The same for any trial, with the cut-off; `sheared` is the trial itself or, if it yields, its to_shear_surface.
   SLUICE_ALWAYS_INLINE PrincipalStress to_cutoff(PrincipalStress trial, PrincipalStress sheared) const;
 };
+
+SLUICE_ALWAYS_INLINE MohrCoulombReturn::MohrCoulombReturn(IsotropicElasticity elasticity, MohrCoulombStrength strengths,
+                                                          double tension_cutoff) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double lambda = elasticity.lambda, shear = elasticity.shear, sin_dilation = strengths.sin_dilation;
+  sin_friction = strengths.sin_friction;
+  strength = strengths.strength;
+  const double up = 1 + sin_friction, down = 1 - sin_friction;
+
+  // What a unit multiplier takes from the principal stresses: D times the flow direction (MC.6).
+  const double drop2 = 2 * lambda * sin_dilation;
+  const double drop1 = drop2 + 2 * shear * (1 + sin_dilation);
+  const double drop3 = drop2 - 2 * shear * (1 - sin_dilation);
+  const double lower_drop3 = 0.5 * (drop2 + drop3), upper_drop1 = 0.5 * (drop1 + drop2);
+  const double face = up * drop1 - down * drop3;
+  const double lower = up * drop1 - down * lower_drop3, upper = up * upper_drop1 - down * drop3;
+
+  // Few divisions, for they are slow.
+  const double inverse_cosine = 1 / (up * down), edges = lower * upper, inverse = 1 / (face * edges);
+  const bool has_apex = sin_friction > 0;
+  const double where_apex = strength / (has_apex ? 2 * sin_friction : 1);
+  apex = has_apex ? where_apex : infinity;
+  cutoff = tension_cutoff < apex ? tension_cutoff : infinity;
+  cutoff_s3 = (up * cutoff - strength) * (up * inverse_cosine);
+  yield_slope = down * (down * inverse_cosine);
+  yield_intercept = strength * (down * inverse_cosine);
+  face_multiplier = inverse * edges;
+  face_s2 = drop2 * face_multiplier;
+  face_s3 = drop3 * face_multiplier;
+  lower_edge_s3 = lower_drop3 * (inverse * face * upper);
+  upper_edge_s3 = drop3 * (inverse * face * lower);
+  lower_gap = 2 * shear * (1 - sin_dilation);
+  upper_gap = 2 * shear * (1 + sin_dilation);
+
+  cutoff_plane = lambda / (lambda + 2 * shear);
+  cutoff_edge = lambda / (2 * lambda + 2 * shear);
+}
 
 SLUICE_ALWAYS_INLINE PrincipalStress MohrCoulombReturn::to_shear_surface(PrincipalStress trial) const {
   // The face leaves its sector of s1 >= s2 >= s3 where a gap closes; then the edge of the narrower gap (MC.8).

@@ -175,7 +175,7 @@ void StressUpdate<Dim>::take_next_position(Scene<Dim>& scene, Items some) {
 template <int Dim>
 StressReport StressUpdate<Dim>::update_block(Scene<Dim>& scene, const ParticleBlock<Dim>& block,
                                              const StrainIncrements<Dim>& strain, double dt) {
-  return materials_.update_stress(scene.particles, inertia_, scene.blocks, block, strain, dt);
+  return materials_.update_stress(scene.particles, inertia_, scene.blocks, block, strain, dt, scene.time);
 }
 
 /// The strain columns, from particle `first` on.

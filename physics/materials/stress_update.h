@@ -33,7 +33,7 @@ class StressUpdate {
   void declare(Columns& particles, ColumnId inertia);
   void initialise(const Scene<Dim>& scene) { fastest_wave_ = materials_.fastest_wave(scene.particles, inertia_); }
 
-  /// Largest sqrt(M V / inertia) of the last update [m/s].
+  /// Materials::fastest_wave of the last update [m/s].
   double fastest_wave() const { return fastest_wave_; }
   void restore_fastest_wave(double speed) { fastest_wave_ = speed; }
 

@@ -1,21 +1,16 @@
 /// Water, or another liquid: nothing but viscosity. Its pressure is the physics module's. docs/materials/water.md.
 #include "core/case/schema.h"
-#include "physics/materials/chunk.h"
+#include "physics/materials/elastic_trial.h"
+#include "physics/materials/viscous.h"
 
 namespace sluice {
 
-/// sigma = 2 mu dev(d eps) / dt (W.1).
 template <int Dim>
 SLUICE_MULTITARGET void update_water(const MaterialBatch<Dim>& batch, double viscosity) {
-  const double factor = batch.dt > 0 ? 2 * viscosity / batch.dt : 0;
   const auto update = [&](const Chunk<Dim, 0>& chunk) SLUICE_INLINE_LAMBDA {
-    const auto& e = chunk.strain_increment;
-#pragma GCC ivdep
-    for (int i = 0; i < chunk_lanes; ++i) {
-      const double mean = (e[0][i] + e[1][i] + e[2][i]) / 3;
-      for (int k = 0; k < 3; ++k) chunk.stress[k][i] = factor * (e[k][i] - mean);
-      for (int k = 3; k < symmetric_components<Dim>; ++k) chunk.stress[k][i] = factor * e[k][i];
-    }
+    alignas(64) double stress[symmetric_components<Dim>][chunk_lanes];
+    viscous_stress<Dim>(chunk, viscosity, batch.dt, stress);
+    store_stress<Dim>(stress, chunk);
   };
   for_each_chunk<Dim, 0>(batch, update);
 }
@@ -28,6 +23,7 @@ class Water final : public Material {
 
   double density() const override { return density_; }
   bool liquid() const override { return true; }
+  double viscosity() const override { return viscosity_; }
   IsotropicElasticity elasticity() const override { return {}; }
   double stored_energy(std::span<const double>) const override { return 0; }
   void update(const MaterialBatch<2>& batch) const override { update_water<2>(batch, viscosity_); }

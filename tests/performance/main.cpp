@@ -3,6 +3,7 @@
 ///   sluice_performance [--smoke] [--sizes 1 0.25 0.125] [--only linear]
 ///   sluice_performance --solver      the sparse solvers instead (solver.h)
 ///   sluice_performance --two-phase [--only step]   steps with pore water instead (two_phase.h)
+///   sluice_performance --materials   the constitutive models alone (materials.h)
 ///
 /// `--only` leaves out the kernels whose names do not contain the word; the plain one stays.
 /// Every figure is a rate of bursts taken in turn (plain, linear, quadratic, …, plain, …), so that a machine whose
@@ -21,6 +22,7 @@
 #include "core/case/case.h"
 #include "core/parallel/parallel.h"
 #include "core/simulation/simulation.h"
+#include "materials.h"
 #include "plain_kernel.h"
 #include "solver.h"
 #include "two_phase.h"
@@ -181,7 +183,7 @@ double compare(double cell, const std::string& kernels, int turns, double second
 int main(int argc, char** argv) {
   std::vector<double> cells;
   std::string kernels;
-  bool smoke = false, solver = false, water = false;
+  bool smoke = false, solver = false, water = false, materials = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--smoke")
@@ -190,6 +192,8 @@ int main(int argc, char** argv) {
       solver = true;
     else if (word == "--two-phase")
       water = true;
+    else if (word == "--materials")
+      materials = true;
     else if (word == "--only" && i + 1 < argc)
       kernels = argv[++i];
     else if (word != "--sizes")
@@ -197,7 +201,8 @@ int main(int argc, char** argv) {
   }
   if (solver || smoke) measure_solvers(smoke);
   if (water || smoke) measure_two_phase(smoke, kernels == "step");
-  if (solver || water) return 0;
+  if (materials || smoke) measure_materials(smoke);
+  if (solver || water || materials) return 0;
   if (cells.empty()) cells = smoke ? std::vector<double>{1} : std::vector<double>{1, 0.25, 0.125};
   double in_cache = 0;
   for (const double cell : cells) {

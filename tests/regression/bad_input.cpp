@@ -171,6 +171,10 @@ TEST(BadCase, has_a_time_step_above_the_limit) {
                  {"scheme.time_step of 0.01 s", "wave limit of 0.00", "time_step: computed"});
 }
 
+TEST(BadCase, has_an_unknown_form_of_strain) {
+  expect_refused(column + "scheme: {strain: henky}\n", {"strain", "henky", "jaumann", "did you mean", "hencky"});
+}
+
 TEST(BadCase, observes_nothing) {
   expect_refused(with(column, "front, direction: [1, 0]",
                       "mean_displacement, direction: [1, 0], region: {box: {min: [4 m, 0 m], max: [5 m, 1 m]}}"),

@@ -76,7 +76,8 @@ TEST(MaterialCase, ParametersThatContradictEachOther) {
 
 TEST(MaterialCase, CatalogueDescribesTheModels) {
   const auto& entries = material_registry().entries();
-  for (const std::string name : {"linear_elastic", "mohr_coulomb"}) {
+  for (const std::string name : {"linear_elastic", "mohr_coulomb", "von_mises", "tresca", "drucker_prager",
+                                 "modified_cam_clay", "newtonian", "bingham", "water"}) {
     ASSERT_TRUE(entries.count(name)) << name;
     EXPECT_FALSE(entries.at(name).summary.empty());
     EXPECT_TRUE(entries.at(name).keys);

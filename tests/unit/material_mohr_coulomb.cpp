@@ -200,9 +200,9 @@ void update_here(const MaterialBatch<2>& batch, const MohrCoulombParameters& p) 
   const MohrCoulombReturn map(p);
   const double factor = std::sqrt(2.0) / (6 * p.elasticity.shear);
   if (map.has_cutoff()) {
-    mohr_coulomb::update_plane<true>(batch, p.elasticity, map, factor);
+    mohr_coulomb::update_plane<true>(batch, p.elasticity, mohr_coulomb::Perfect{map}, factor);
   } else {
-    mohr_coulomb::update_plane<false>(batch, p.elasticity, map, factor);
+    mohr_coulomb::update_plane<false>(batch, p.elasticity, mohr_coulomb::Perfect{map}, factor);
   }
 }
 
@@ -212,9 +212,9 @@ __attribute__((target("arch=x86-64-v3"))) void update_v3(const MaterialBatch<2>&
   const MohrCoulombReturn map(p);
   const double factor = std::sqrt(2.0) / (6 * p.elasticity.shear);
   if (map.has_cutoff()) {
-    mohr_coulomb::update_plane<true>(batch, p.elasticity, map, factor);
+    mohr_coulomb::update_plane<true>(batch, p.elasticity, mohr_coulomb::Perfect{map}, factor);
   } else {
-    mohr_coulomb::update_plane<false>(batch, p.elasticity, map, factor);
+    mohr_coulomb::update_plane<false>(batch, p.elasticity, mohr_coulomb::Perfect{map}, factor);
   }
 }
 
@@ -223,9 +223,9 @@ __attribute__((target("arch=x86-64-v4"))) void update_v4(const MaterialBatch<2>&
   const MohrCoulombReturn map(p);
   const double factor = std::sqrt(2.0) / (6 * p.elasticity.shear);
   if (map.has_cutoff()) {
-    mohr_coulomb::update_plane<true>(batch, p.elasticity, map, factor);
+    mohr_coulomb::update_plane<true>(batch, p.elasticity, mohr_coulomb::Perfect{map}, factor);
   } else {
-    mohr_coulomb::update_plane<false>(batch, p.elasticity, map, factor);
+    mohr_coulomb::update_plane<false>(batch, p.elasticity, mohr_coulomb::Perfect{map}, factor);
   }
 }
 

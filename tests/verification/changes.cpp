@@ -95,5 +95,43 @@ TEST(Changes, SurviveARestart) {
   }
 }
 
+// Sand that becomes clay whose strength is a share of the overburden: each point takes the vertical stress that it has
+// at that time, rho g times its depth, in its first step as clay; strengths then fall along a ramp. 1 % of the largest:
+// a column at rest in elastic equilibrium, which the change does not disturb before the ramp.
+TEST(Changes, ToAStrengthOfTheOverburden) {
+  const auto simulation = simulate(
+      {.grid = "{min: [0 m, 0 m], max: [2 m, 5 m], cell: 0.25 m}",
+       .material = "{model: mohr_coulomb, density: 1600 kg/m3, youngs_modulus: 10 MPa, friction_angle: 35 deg, "
+                   "cohesion: 1 kPa}\n"
+                   "  clay: {model: von_mises, density: 1600 kg/m3, youngs_modulus: 10 MPa, strength_ratio: 0.5, "
+                   "minimum_strength: 2 kPa, softening: {sensitivity: 20, start: 40 ms, ramp: 40 ms}}",
+       .bodies = "  - {material: soil, box: {min: [0 m, 0 m], max: [2 m, 4 m]}}",
+       .gravity = "[0, -9.81 m/s2]",
+       .boundaries = "{left: roller, right: roller, bottom: fixed}",
+       .initial_stress = "{method: elastic_equilibrium}",
+       .scheme = Scheme{}.with("time_step: 1 ms"),
+       .more = "changes: [{at: 20 ms, material: soil, becomes: clay}]\n"});
+  simulation->advance_to(20e-3);
+  for (const double overburden : by_id(simulation->particles(), "initial_vertical_stress")) EXPECT_EQ(overburden, 0);
+  simulation->advance_to(30e-3);
+  const auto y = by_id(simulation->particles(), "position", 1);
+  const auto overburden = by_id(simulation->particles(), "initial_vertical_stress");
+  const double weight = 1600 * 9.81;
+  for (std::size_t p = 0; p < y.size(); ++p) EXPECT_NEAR(overburden[p], weight * (4 - y[p]), 0.01 * 4 * weight);
+  EXPECT_EQ(largest_magnitude(by_id(simulation->particles(), "equivalent_plastic_strain")), 0);
+  simulation->advance_to(100e-3);
+  const auto plastic = by_id(simulation->particles(), "equivalent_plastic_strain");
+  std::array<std::vector<double>, 4> s;
+  for (int c = 0; c < 4; ++c) s[static_cast<std::size_t>(c)] = by_id(simulation->particles(), "stress", c);
+  EXPECT_EQ(overburden, by_id(simulation->particles(), "initial_vertical_stress"));
+  for (std::size_t p = 0; p < y.size(); ++p) {
+    const double strength = std::max(0.5 * overburden[p], 2e3) / 20, mean = (s[0][p] + s[1][p] + s[2][p]) / 3;
+    double half = s[3][p] * s[3][p];
+    for (int c = 0; c < 3; ++c) half += 0.5 * std::pow(s[static_cast<std::size_t>(c)][p] - mean, 2);
+    EXPECT_LE(std::sqrt(half), strength * (1 + 1e-9));
+  }
+  EXPECT_GT(largest_magnitude(plastic), 0);
+}
+
 }  // namespace
 }  // namespace sluice

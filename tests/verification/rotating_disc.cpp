@@ -140,7 +140,7 @@ class Turntable {
     StrainIncrements<Dim> increments;
     for (auto& strain : increments.strain) strain = zero_.data();
     for (std::size_t c = 0; c < spin_increment.size(); ++c) increments.rotation[c] = &spin_increment[c];
-    materials_.update_stress(particles_, particles_.mass, blocks_, block_, increments, 1.0);
+    materials_.update_stress(particles_, particles_.mass, blocks_, block_, increments, 1.0, 0.0);
   }
 
   Tensor stress() const {
@@ -153,6 +153,7 @@ class Turntable {
  private:
   static Case definition() {
     Case c;
+    c.grid.cell.assign(Dim, 1.0);
     c.materials.emplace_back(
         "soil", read_yaml_text("{model: linear_elastic, density: 1000 kg/m3, youngs_modulus: 1 MPa}", "soil"));
     return c;
