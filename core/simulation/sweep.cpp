@@ -17,8 +17,7 @@ std::size_t Sweep<Dim>::ready(std::size_t stage, std::size_t done_before) const 
 template <int Dim>
 void Sweep<Dim>::run(std::size_t blocks_per_thread) const {
   const std::size_t count = blocks_.particle_blocks().size();
-  const std::size_t stride =
-      count <= few_blocks ? few_blocks : blocks_per_thread * static_cast<std::size_t>(thread_count());
+  const std::size_t stride = blocks_per_thread * static_cast<std::size_t>(thread_count());
   std::vector<std::size_t> done(stages_.size(), 0);
   while (done[0] < count) {
     for (std::size_t s = 0; s < stages_.size(); ++s) {
@@ -27,6 +26,11 @@ void Sweep<Dim>::run(std::size_t blocks_per_thread) const {
       done[s] = end;
     }
   }
+}
+
+template <int Dim>
+void Sweep<Dim>::run() const {
+  run(blocks_.particle_blocks().size() <= few_blocks ? few_blocks : usual_pace);
 }
 
 template class Sweep<2>;

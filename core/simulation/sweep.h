@@ -30,7 +30,8 @@ class Sweep {
   static constexpr std::size_t usual_pace = 96;
   /// So few blocks, some 5 MiB of tiles and particles for each of two threads, are done at one go.
   static constexpr std::size_t few_blocks = 512;
-  void run(std::size_t blocks_per_thread = usual_pace) const;
+  void run(std::size_t blocks_per_thread) const;
+  void run() const;
 
  private:
   struct Entry {
