@@ -330,6 +330,7 @@ void read_time_step(SchemeCase& scheme, const Node& node, Problems& problems) {
     value::word(node, "time_step", {"computed"}, problems);
     return;
   }
+  scheme.time_step_place = node.place;
   scheme.fixed_time_step = value::quantity(node, "time_step", unit::time, above(0), problems);
 }
 
