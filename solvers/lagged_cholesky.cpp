@@ -5,8 +5,10 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
+#include "core/parallel/parallel.h"
 #include "solvers/stopwatch.h"
 
 namespace sluice {
@@ -14,12 +16,13 @@ namespace {
 
 using Options = LaggedCholeskyOptions;
 
-/// Operations of different kinds in one unit, nanoseconds of one core of a machine of 2025: within a fifth of what
+/// Operations of different kinds in one unit, nanoseconds of a machine of 2025; iterations are shared by threads, of
+/// which two are assumed (a factorization is not). On one core it is 0.8 and 3 for an iteration, within a fifth of what
 /// `sluice_performance --solver` measured from 5600 to 360,000 unknowns in 2-D and 3-D. They weigh a factorization
 /// against an iteration; no result depends on them but by the choice when to factorize.
 RenewalRule::Costs counted_costs(const SparseCholeskyStatistics& factor, std::size_t matrix_nonzeros) {
   const double entries = static_cast<double>(factor.factor_nonzeros), nonzeros = static_cast<double>(matrix_nonzeros);
-  return {.renewal = 0.022 * factor.flops + 8 * entries + 70 * nonzeros, .iteration = 0.8 * entries + 3 * nonzeros};
+  return {.renewal = 0.022 * factor.flops + 8 * entries + 70 * nonzeros, .iteration = 0.5 * entries + 2 * nonzeros};
 }
 
 /// A number of solves to weigh against one factorization when orderings are compared.
@@ -27,23 +30,21 @@ constexpr int typical_solves = 10;
 /// An order that takes longer to find than another must save a tenth of the work: it is found anew for every pattern.
 constexpr double saving = 0.9;
 
-/// y = A x.
-void multiply(const SymmetricPattern& pattern, std::span<const double> values, std::span<const double> x,
-              std::span<double> y) {
-  const int* const row = pattern.row.data();
-  const double* const value = values.data();
-  std::fill(y.begin(), y.end(), 0.0);
-  for (std::size_t column = 0; column < x.size(); ++column) {
-    const int begin = pattern.column_begin[column], end = pattern.column_begin[column + 1];
-    const double x_column = x[column];
-    double sum = value[begin] * x_column;
-    for (int k = begin + 1; k < end; ++k) {
-      const auto i = static_cast<std::size_t>(row[k]);
-      sum += value[k] * x[i];
-      y[i] += value[k] * x_column;
-    }
-    y[column] += sum;
-  }
+/// Loops over unknowns are cut in shares of this many, which threads may take; sums over a share are added up in the
+/// order of the shares, so that the bits do not depend on the number of threads.
+constexpr std::size_t share_size = 1024;
+/// Loops over fewer unknowns are not worth waking the other threads.
+constexpr std::size_t worth_sharing = 2 * share_size;
+
+/// Calls body(begin, end, number of the share).
+template <class Body>
+void for_shares(std::size_t count, const Body& body) {
+  const std::size_t shares = (count + share_size - 1) / share_size;
+  const auto share = [&](std::size_t s) { body(s * share_size, std::min(count, (s + 1) * share_size), s); };
+  if (count < worth_sharing)
+    for (std::size_t s = 0; s < shares; ++s) share(s);
+  else
+    parallel_for(shares, share);
 }
 
 /// Four sums instead of one, which the processor can form side by side; the order is fixed, and so are the bits.
@@ -137,8 +138,10 @@ void LaggedCholesky::use(Options::Ordering ordering, SparseCholesky cholesky) {
   factorized_values_.clear();
   const SymmetricPattern& pattern = cholesky_.pattern();
   rule_ = RenewalRule(counted_costs(cholesky_.statistics(), pattern.row.size()));
+  rows_ = FullRows(pattern);
   for (auto* vector : {&inverse_diagonal_, &r_, &z_, &p_, &q_})
     vector->resize(static_cast<std::size_t>(pattern.size()));
+  shares_.resize((r_.size() + share_size - 1) / share_size);
   statistics_.unknowns = pattern.size();
   statistics_.matrix_nonzeros = static_cast<std::int64_t>(pattern.row.size());
   statistics_.factor_nonzeros = cholesky_.statistics().factor_nonzeros;
@@ -147,23 +150,51 @@ void LaggedCholesky::use(Options::Ordering ordering, SparseCholesky cholesky) {
                                                                                  : ordering);
 }
 
+/// Both triangles row by row: rows are products of their own, which threads can share.
+LaggedCholesky::FullRows::FullRows(const SymmetricPattern& pattern) : begin(1, 0) {
+  const auto n = static_cast<std::size_t>(pattern.size());
+  begin.resize(n + 1, 0);
+  const auto for_entries = [&](const auto& visit) {
+    for (std::size_t column = 0; column < n; ++column)
+      for (int k = pattern.column_begin[column]; k < pattern.column_begin[column + 1]; ++k) {
+        const auto row = static_cast<std::size_t>(pattern.row[static_cast<std::size_t>(k)]);
+        visit(row, column, k);
+        if (row != column) visit(column, row, k);
+      }
+  };
+  for_entries([&](std::size_t row, std::size_t, int) { ++begin[row + 1]; });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  entry.resize(static_cast<std::size_t>(begin[n]));
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for_entries([&](std::size_t row, std::size_t column, int slot) {
+    entry[static_cast<std::size_t>(next[row]++)] = {static_cast<int>(column), slot};
+  });
+}
+
+/// y = A x on a share of the rows.
+void LaggedCholesky::multiply(std::span<const double> values, std::span<const double> x, std::span<double> y,
+                              std::size_t begin, std::size_t end) const {
+  for (std::size_t i = begin; i < end; ++i) {
+    double sum = 0;
+    for (int k = rows_.begin[i]; k < rows_.begin[i + 1]; ++k) {
+      const auto [column, slot] = rows_.entry[static_cast<std::size_t>(k)];
+      sum += values[static_cast<std::size_t>(slot)] * x[static_cast<std::size_t>(column)];
+    }
+    y[i] = sum;
+  }
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 // Norms
 // ---------------------------------------------------------------------------------------------------------------------
 
-/// False if an entry of the diagonal is not positive: such a matrix is not positive definite.
-bool LaggedCholesky::invert_diagonal(std::span<const double> values) {
+void LaggedCholesky::invert_diagonal(std::span<const double> values, std::size_t begin, std::size_t end) {
   const std::vector<int>& column_begin = cholesky_.pattern().column_begin;
-  bool positive = true;
-  for (std::size_t i = 0; i < inverse_diagonal_.size(); ++i) {
-    const double diagonal = values[static_cast<std::size_t>(column_begin[i])];
-    positive = positive && diagonal > 0;
-    inverse_diagonal_[i] = 1 / diagonal;
-  }
-  return positive;
+  for (std::size_t i = begin; i < end; ++i)
+    inverse_diagonal_[i] = 1 / values[static_cast<std::size_t>(column_begin[i])];
 }
 
-LaggedCholesky::Norms LaggedCholesky::norms(std::span<const double> r) const {
+LaggedCholesky::Sums LaggedCholesky::sums(std::span<const double> r, std::size_t begin, std::size_t end) const {
   std::array<double, 4> plain{}, scaled{}, largest{};
   const auto add = [&](std::size_t i, std::size_t lane) {
     const double square = r[i] * r[i];
@@ -171,24 +202,44 @@ LaggedCholesky::Norms LaggedCholesky::norms(std::span<const double> r) const {
     scaled[lane] += square * inverse_diagonal_[i];
     largest[lane] = std::max(largest[lane], std::abs(r[i]));
   };
-  const std::size_t blocks = r.size() / 4 * 4;
-  for (std::size_t i = 0; i < blocks; i += 4)
+  const std::size_t blocks = begin + (end - begin) / 4 * 4;
+  for (std::size_t i = begin; i < blocks; i += 4)
     for (std::size_t lane = 0; lane < 4; ++lane) add(i + lane, lane);
-  for (std::size_t i = blocks; i < r.size(); ++i) add(i, i - blocks);
+  for (std::size_t i = blocks; i < end; ++i) add(i, i - blocks);
   const auto sum = [](const std::array<double, 4>& s) { return (s[0] + s[1]) + (s[2] + s[3]); };
-  return {std::sqrt(sum(plain)), std::sqrt(sum(scaled)), *std::max_element(largest.begin(), largest.end())};
+  return {sum(plain), sum(scaled), *std::max_element(largest.begin(), largest.end())};
 }
 
-double LaggedCholesky::distance() {
-  norms_ = norms(r_);
+/// Calls body(begin, end) for all shares of the unknowns, and returns the norms of `r` after it.
+template <class Body>
+LaggedCholesky::Norms LaggedCholesky::norms_after(std::span<const double> r, const Body& body) {
+  for_shares(r.size(), [&](std::size_t begin, std::size_t end, std::size_t share) {
+    body(begin, end);
+    shares_[share] = sums(r, begin, end);
+  });
+  Sums all;
+  for (const Sums& share : shares_) {
+    all.plain += share.plain, all.scaled += share.scaled;
+    all.largest = std::max(all.largest, share.largest);
+  }
+  return {std::sqrt(all.plain), std::sqrt(all.scaled), all.largest};
+}
+
+double LaggedCholesky::distance() const {
   return std::max({norms_.plain / allowed_.plain, norms_.scaled / allowed_.scaled, norms_.largest / allowed_.largest});
+}
+
+bool LaggedCholesky::near_round_off() const {
+  return certain_.plain > allowed_.plain || certain_.scaled > allowed_.scaled || certain_.largest > allowed_.largest;
 }
 
 /// r = b - A x; returns the distance.
 double LaggedCholesky::update_residual(std::span<const double> values, std::span<const double> b,
                                        std::span<const double> x) {
-  multiply(cholesky_.pattern(), values, x, r_);
-  for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = b[i] - r_[i];
+  norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end) {
+    multiply(values, x, r_, begin, end);
+    for (std::size_t i = begin; i < end; ++i) r_[i] = b[i] - r_[i];
+  });
   return distance();
 }
 
@@ -214,16 +265,21 @@ LaggedCholesky::Report LaggedCholesky::solve(std::span<const double> values, std
 
 LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> values, std::span<const double> b,
                                                     std::span<double> x, double largest_residual) {
-  if (!invert_diagonal(values)) factorize(values);  // which throws, and says why
-  const Norms size = norms(b);
+  const Norms size = norms_after(b, [&](std::size_t begin, std::size_t end) { invert_diagonal(values, begin, end); });
+  // Not so if an entry of the diagonal is not positive: such a matrix is not positive definite.
+  const bool positive = std::ranges::all_of(inverse_diagonal_, [](double inverse) { return inverse > 0; });
+  if (!positive) factorize(values);  // which throws, and says why
   if (size.plain == 0) {
     std::fill(x.begin(), x.end(), 0.0);
     return {};
   }
   const double tolerance = options_.relative_tolerance;
+  // Some hundred times what an iteration or two add to the difference between the residual carried along and b - A x.
+  constexpr double noise = 1e-13;
+  certain_ = {.plain = noise * size.plain, .scaled = noise * size.scaled, .largest = noise * size.largest};
   allowed_ = {.plain = tolerance * size.plain, .scaled = tolerance * size.scaled, .largest = largest_residual};
   Report report;
-  double distance = start(values, b, x);
+  double distance = start(values, b, size, x);
   if (!(distance <= 1) || options_.choice == Options::Choice::direct) {
     bool renew = factorized_values_.empty() || rule_.renew();
     if (!renew) {
@@ -236,12 +292,12 @@ LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> valu
       const int before = report.iterations;
       factorize(values);
       report.factorized = true;
-      if (before > 0) distance = start(values, b, x);
+      if (before > 0) distance = start(values, b, size, x);
       for (const auto preconditioner : {Preconditioner::fresh, Preconditioner::fresh_double}) {
         const Outcome outcome = iterate(values, b, x, distance, preconditioner, report.iterations);
         report.converged = outcome == Outcome::converged;
         if (outcome != Outcome::given_up) break;
-        distance = start(values, b, x);
+        distance = start(values, b, size, x);
       }
       rule_.renewed(before, report.iterations - before);
     }
@@ -254,12 +310,14 @@ LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> valu
 }
 
 /// Sets the residual of the guess, or of zero where that is a better guess; returns the distance.
-double LaggedCholesky::start(std::span<const double> values, std::span<const double> b, std::span<double> x) {
-  const double distance = update_residual(values, b, x);
-  if (dot(r_, r_) <= dot(b, b)) return distance;
+double LaggedCholesky::start(std::span<const double> values, std::span<const double> b, const Norms& size,
+                             std::span<double> x) {
+  const double found = update_residual(values, b, x);
+  if (norms_.plain <= size.plain) return found;
   std::fill(x.begin(), x.end(), 0.0);
   std::copy(b.begin(), b.end(), r_.begin());
-  return this->distance();
+  norms_ = size;
+  return distance();
 }
 
 void LaggedCholesky::factorize(std::span<const double> values) {
@@ -268,7 +326,7 @@ void LaggedCholesky::factorize(std::span<const double> values) {
   {
     const Stopwatch stopwatch(seconds);
     cholesky_.factorize(values);
-    invert_diagonal(values);
+    invert_diagonal(values, 0, inverse_diagonal_.size());
     packed_.copy(cholesky_, inverse_diagonal_);
   }
   statistics_.factorize_seconds += seconds;
@@ -298,18 +356,22 @@ LaggedCholesky::Outcome LaggedCholesky::iterate(std::span<const double> values, 
       packed_.solve(r_, norms_.scaled, z_);
     const double rho = dot(r_, z_), beta = last_rho > 0 ? rho / last_rho : 0;
     for (std::size_t k = 0; k < p_.size(); ++k) p_[k] = z_[k] + beta * p_[k];
-    multiply(cholesky_.pattern(), values, p_, q_);
+    for_shares(p_.size(),
+               [&](std::size_t begin, std::size_t end, std::size_t) { multiply(values, p_, q_, begin, end); });
     const double curvature = dot(p_, q_);
     if (!(rho > 0 && curvature > 0)) break;  // not positive definite, or at the end of what numbers resolve
     ++iterations;
     const double alpha = rho / curvature;
-    for (std::size_t k = 0; k < r_.size(); ++k) {
-      x[k] += alpha * p_[k];
-      r_[k] -= alpha * q_[k];
-    }
+    norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        x[k] += alpha * p_[k];
+        r_[k] -= alpha * q_[k];
+      }
+    });
     last_rho = rho;
     distance = this->distance();
     if (distance <= 1) {
+      if (i <= 2 && !near_round_off()) return Outcome::converged;
       // The residual carried along drifts away from b - A x by round-off.
       distance = update_residual(values, b, x);
       if (distance <= 1) return Outcome::converged;

@@ -52,7 +52,7 @@ struct LaggedCholeskyOptions {
   Ordering ordering = Ordering::measured;
   Choice choice = Choice::counted;
   int blas_threads = 1;  ///< as in SparseCholeskyOptions
-  double relative_tolerance = 1e-10;
+  double relative_tolerance = 1e-6;
   int most_iterations = 100;  ///< with a lagged factor; then it is renewed
 };
 
@@ -92,9 +92,9 @@ class LaggedCholesky {
   ///   ||r|| <= relative_tolerance ||b||,  max |r_i| <= largest_residual,
   ///   ||D^-1/2 r|| <= relative_tolerance ||D^-1/2 b||.
   /// The last, an estimate of the energy norm of the error, does not change with the scale of single unknowns: unknowns
-  /// of small cut cells, whose rows are small, are as accurate as others. All are tested on the residual itself, not on
-  /// the one that conjugate gradients carry along. Throws NotPositiveDefinite; the factor is forgotten then. Allocates
-  /// nothing unless it factorizes.
+  /// of small cut cells, whose rows are small, are as accurate as others. All are tested on the residual itself, or on
+  /// the one that conjugate gradients carry along while round-off cannot tell them apart. Throws NotPositiveDefinite;
+  /// the factor is forgotten then. Allocates nothing unless it factorizes.
   Report solve(std::span<const double> values, std::span<const double> b, std::span<double> x,
                double largest_residual = std::numeric_limits<double>::infinity());
 
@@ -121,15 +121,36 @@ class LaggedCholesky {
   double measure(SparseCholesky& candidate) const;
   void use(LaggedCholeskyOptions::Ordering ordering, SparseCholesky cholesky);
 
-  bool invert_diagonal(std::span<const double> values);
-  Norms norms(std::span<const double> r) const;
+  /// The matrix by whole rows: for each entry its column, and its place among the values.
+  struct FullRows {
+    struct Entry {
+      int column, slot;
+    };
+    std::vector<int> begin;
+    std::vector<Entry> entry;
+    FullRows() = default;
+    explicit FullRows(const SymmetricPattern& pattern);
+  };
+  /// What norms are made of, before the roots are taken.
+  struct Sums {
+    double plain = 0, scaled = 0, largest = 0;
+  };
+
+  void multiply(std::span<const double> values, std::span<const double> x, std::span<double> y, std::size_t begin,
+                std::size_t end) const;
+  void invert_diagonal(std::span<const double> values, std::size_t begin, std::size_t end);
+  Sums sums(std::span<const double> r, std::size_t begin, std::size_t end) const;
+  template <class Body>
+  Norms norms_after(std::span<const double> r, const Body& body);
   /// The largest ratio of a norm of r_ to what is allowed: converged at 1 and below.
-  double distance();
+  double distance() const;
+  /// Whether what is allowed is so little that round-off counts.
+  bool near_round_off() const;
   double update_residual(std::span<const double> values, std::span<const double> b, std::span<const double> x);
 
   Report solve_within(std::span<const double> values, std::span<const double> b, std::span<double> x,
                       double largest_residual);
-  double start(std::span<const double> values, std::span<const double> b, std::span<double> x);
+  double start(std::span<const double> values, std::span<const double> b, const Norms& size, std::span<double> x);
   void factorize(std::span<const double> values);
   Outcome iterate(std::span<const double> values, std::span<const double> b, std::span<double> x, double distance,
                   Preconditioner preconditioner, int& iterations);
@@ -143,7 +164,10 @@ class LaggedCholesky {
   std::vector<double> factorized_values_;  // empty if there is no factor
   RenewalRule rule_;
   Norms allowed_;  // in the current solve
+  Norms certain_;  // of what round-off adds to a residual
   Norms norms_;    // of r_
+  FullRows rows_;
+  std::vector<Sums> shares_;
   std::vector<double> inverse_diagonal_, r_, z_, p_, q_;
 };
 

@@ -3,8 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel/parallel.h"
+
 namespace sluice {
 namespace {
+
+/// Parts that a factor is divided into, if it has this many numbers: below, waiting for each other costs more.
+constexpr std::size_t enough_parts = 8;
+constexpr std::size_t worth_dividing = 50'000;
 
 /// y -= A x for `rows` x `width` A by columns. Four columns at a time, so that y is read and written less often.
 void subtract_product(const float* a, std::size_t rows, std::size_t width, const float* x, float* y) {
@@ -60,7 +66,7 @@ void PackedFactor::copy(const SparseCholesky& cholesky, std::span<const double> 
     const std::span<const int> rows =
         factor.row.subspan(at(factor.first_row, 0), at(factor.first_row, 1) - at(factor.first_row, 0));
     const double* const value = factor.value.data() + at(factor.first_value, 0);
-    blocks_.push_back({first, width, row_.size(), rows.size() - width, value_.size()});
+    blocks_.push_back({first, width, row_.size(), rows.size() - width, value_.size(), rows.size() - width});
     most_rows = std::max(most_rows, rows.size() - width);
     row_.insert(row_.end(), rows.begin() + static_cast<std::ptrdiff_t>(width), rows.end());
     const auto scaled = [&](std::size_t i, std::size_t j) {
@@ -78,18 +84,97 @@ void PackedFactor::copy(const SparseCholesky& cholesky, std::span<const double> 
   }
   x_.resize(order.size());
   below_.resize(most_rows);
+  divide();
+}
+
+/// From the roots of the elimination tree down, the branch with most numbers gives way to the branches above its root,
+/// until there are enough.
+void PackedFactor::divide() {
+  parts_.clear(), trunk_.clear(), trunk_columns_.clear();
+  place_in_trunk_.assign(x_.size(), 0);
+  std::vector<std::size_t> block_of(x_.size()), first(blocks_.size()), size(blocks_.size(), 0);
+  std::vector<std::vector<std::size_t>> children(blocks_.size());
+  std::vector<std::size_t> branches;  // by their last block
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    std::fill_n(block_of.begin() + static_cast<std::ptrdiff_t>(blocks_[b].first), blocks_[b].width, b);
+  bool consecutive = true;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    first[b] = b;
+    std::size_t blocks = 1;
+    size[b] += blocks_[b].width * (blocks_[b].width + blocks_[b].rows);
+    for (const std::size_t child : children[b]) {
+      first[b] = std::min(first[b], first[child]);
+      size[b] += size[child];
+      blocks += child - first[child] + 1;
+    }
+    consecutive = consecutive && blocks == b - first[b] + 1;
+    if (blocks_[b].rows == 0)
+      branches.push_back(b);
+    else
+      children[block_of[static_cast<std::size_t>(row_[blocks_[b].first_row])]].push_back(b);
+  }
+  if (!consecutive || value_.size() < worth_dividing) {
+    branches.clear();
+    for (std::size_t b = 0; b < blocks_.size(); ++b) trunk_.push_back(b);
+  }
+  while (!branches.empty() && branches.size() < enough_parts) {
+    const auto largest =
+        std::ranges::max_element(branches, [&](std::size_t a, std::size_t b) { return size[a] < size[b]; });
+    const std::size_t root = *largest;
+    if (children[root].empty()) break;
+    trunk_.push_back(root);
+    branches.erase(largest);
+    branches.insert(branches.end(), children[root].begin(), children[root].end());
+  }
+  std::ranges::sort(branches);
+  std::ranges::sort(trunk_);
+  for (const std::size_t b : trunk_)
+    for (std::size_t k = blocks_[b].first; k < blocks_[b].first + blocks_[b].width; ++k) {
+      place_in_trunk_[k] = trunk_columns_.size();
+      trunk_columns_.push_back(k);
+    }
+  for (const std::size_t b : branches) {
+    const std::size_t end = blocks_[b].first + blocks_[b].width;
+    parts_.push_back({first[b], b + 1, blocks_[first[b]].first, end, std::vector<float>(below_.size()),
+                      std::vector<float>(trunk_columns_.size())});
+    for (std::size_t k = first[b]; k <= b; ++k) {
+      const auto rows = row_.begin() + static_cast<std::ptrdiff_t>(blocks_[k].first_row);
+      const auto inner =
+          std::lower_bound(rows, rows + static_cast<std::ptrdiff_t>(blocks_[k].rows), static_cast<int>(end));
+      blocks_[k].inner_rows = static_cast<std::size_t>(inner - rows);
+    }
+  }
+}
+
+void PackedFactor::load(std::size_t k, std::span<const double> r, double size) {
+  x_[k] = static_cast<float>(r[static_cast<std::size_t>(order_[k])] * scale_[k] / size);
+}
+
+void PackedFactor::unload(std::size_t k, double size, std::span<double> z) const {
+  z[static_cast<std::size_t>(order_[k])] = static_cast<double>(x_[k]) * scale_[k] * size;
 }
 
 void PackedFactor::solve(std::span<const double> r, double size, std::span<double> z) {
-  for (std::size_t k = 0; k < x_.size(); ++k)
-    x_[k] = static_cast<float>(r[static_cast<std::size_t>(order_[k])] * scale_[k] / size);
-  for (const Block& block : blocks_) forward(block);
-  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(*block);
-  for (std::size_t k = 0; k < x_.size(); ++k)
-    z[static_cast<std::size_t>(order_[k])] = static_cast<double>(x_[k]) * scale_[k] * size;
+  parallel_for(parts_.size(), [&](std::size_t p) {
+    Part& part = parts_[p];
+    for (std::size_t k = part.first_column; k < part.last_column; ++k) load(k, r, size);
+    std::ranges::fill(part.above, 0.0f);
+    for (std::size_t b = part.first_block; b < part.last_block; ++b) forward(blocks_[b], part.below, part.above);
+  });
+  for (const std::size_t k : trunk_columns_) load(k, r, size);
+  for (const Part& part : parts_)
+    for (std::size_t i = 0; i < trunk_columns_.size(); ++i) x_[trunk_columns_[i]] += part.above[i];
+  for (const std::size_t b : trunk_) forward(blocks_[b], below_, nothing_above_);
+  for (auto b = trunk_.rbegin(); b != trunk_.rend(); ++b) backward(blocks_[*b], below_);
+  for (const std::size_t k : trunk_columns_) unload(k, size, z);
+  parallel_for(parts_.size(), [&](std::size_t p) {
+    Part& part = parts_[p];
+    for (std::size_t b = part.last_block; b-- > part.first_block;) backward(blocks_[b], part.below);
+    for (std::size_t k = part.first_column; k < part.last_column; ++k) unload(k, size, z);
+  });
 }
 
-void PackedFactor::forward(const Block& block) {
+void PackedFactor::forward(const Block& block, std::vector<float>& below, std::vector<float>& above) {
   float* const x = x_.data() + block.first;
   const float* column = value_.data() + block.first_value;
   for (std::size_t j = 0; j < block.width; ++j, column += block.width) {
@@ -97,16 +182,20 @@ void PackedFactor::forward(const Block& block) {
 #pragma omp simd
     for (std::size_t i = j + 1; i < block.width; ++i) x[i] -= column[i] * xj;
   }
-  std::fill_n(below_.begin(), block.rows, 0.0f);
-  subtract_product(column, block.rows, block.width, x, below_.data());
-  for (std::size_t i = 0; i < block.rows; ++i) x_[static_cast<std::size_t>(row_[block.first_row + i])] += below_[i];
+  std::fill_n(below.begin(), block.rows, 0.0f);
+  subtract_product(column, block.rows, block.width, x, below.data());
+  const int* const row = row_.data() + block.first_row;
+  for (std::size_t i = 0; i < block.inner_rows; ++i) x_[static_cast<std::size_t>(row[i])] += below[i];
+  for (std::size_t i = block.inner_rows; i < block.rows; ++i)
+    above[place_in_trunk_[static_cast<std::size_t>(row[i])]] += below[i];
 }
 
-void PackedFactor::backward(const Block& block) {
+void PackedFactor::backward(const Block& block, std::vector<float>& below) {
   float* const x = x_.data() + block.first;
   const float* column = value_.data() + block.first_value + block.width * block.width;
-  for (std::size_t i = 0; i < block.rows; ++i) below_[i] = x_[static_cast<std::size_t>(row_[block.first_row + i])];
-  subtract_transposed_product(column, block.rows, block.width, below_.data(), x);
+  const int* const row = row_.data() + block.first_row;
+  for (std::size_t i = 0; i < block.rows; ++i) below[i] = x_[static_cast<std::size_t>(row[i])];
+  subtract_transposed_product(column, block.rows, block.width, below.data(), x);
   for (std::size_t j = block.width; j-- > 0;) {
     column -= block.width;
     const float xj = x[j] *= column[j];

@@ -7,6 +7,10 @@
 ///
 /// The copy is that of D^-1/2 A D^-1/2 with D the diagonal of A, whose factor has no entry above one: coefficients of
 /// any size fit into single precision.
+///
+/// Parts of the elimination tree that do not depend on each other are solved in parallel. Which parts is settled by the
+/// factor alone, and what they add to the unknowns above them is summed in their order: the bits do not depend on the
+/// number of threads.
 #pragma once
 
 #include <cstddef>
@@ -27,19 +31,37 @@ class PackedFactor {
   /// z with A z = r to single precision; `size` is any number of the size of D^-1/2 r, for the range of the numbers.
   void solve(std::span<const double> r, double size, std::span<double> z);
 
+  /// Parts that are solved in parallel; 0 where the factor is too small for it.
+  std::size_t parts() const { return parts_.size(); }
+
  private:
   /// Consecutive columns with the same rows below them. Values by columns: a square of `width` columns with the
   /// triangle L and, above the diagonal, its transpose, so that both solutions run down columns; the diagonal is
   /// inverted. Then `width` columns of the `rows` below.
   struct Block {
     std::size_t first, width, first_row, rows, first_value;
+    std::size_t inner_rows;  ///< so many of the rows belong to the same part
   };
-  void forward(const Block& block);
-  void backward(const Block& block);
+  /// Consecutive blocks, a whole branch of the elimination tree, and their columns.
+  struct Part {
+    std::size_t first_block, last_block, first_column, last_column;
+    std::vector<float> below;  ///< working memory
+    std::vector<float> above;  ///< what it adds to the columns of the trunk
+  };
+  void divide();
+  void forward(const Block& block, std::vector<float>& below, std::vector<float>& above);
+  void backward(const Block& block, std::vector<float>& below);
+  void load(std::size_t k, std::span<const double> r, double size);
+  void unload(std::size_t k, double size, std::span<double> z) const;
 
   std::vector<Block> blocks_;
-  std::vector<int> row_, order_;  // rows of the blocks; unknown that is eliminated k-th
-  std::vector<float> value_, x_, below_;
+  std::vector<Part> parts_;
+  std::vector<std::size_t> trunk_;  // blocks that belong to no part
+  std::vector<std::size_t> trunk_columns_;
+  std::vector<std::size_t> place_in_trunk_;   // of a column that belongs to no part
+  std::vector<float> below_, nothing_above_;  // working memory of the trunk
+  std::vector<int> row_, order_;              // rows of the blocks; unknown that is eliminated k-th
+  std::vector<float> value_, x_;
   std::vector<double> scale_;  // D^-1/2, in the order of elimination
 };
 

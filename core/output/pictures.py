@@ -414,7 +414,9 @@ def draw_history(table, path):
     axes[0].set_ylabel("kinetic energy [J]")
     for name, energy in energies.items():
         axes[1].plot(time, energy - energy[0], label=name.removesuffix("_energy_J"), linewidth=1.2)
-    axes[1].plot(time, sum(energy - energy[0] for energy in energies.values()), "k:", label="sum", linewidth=1)
+    put_in = energies.pop("load_work_energy_J", 0 * time)
+    balance = sum(energy - energy[0] for energy in energies.values()) - (put_in - put_in[0])
+    axes[1].plot(time, balance, "k:", label="sum less load work" if put_in.any() else "sum", linewidth=1)
     axes[1].set_ylabel("change of energy [J]")
     axes[1].legend(frameon=False, fontsize=8)
     taken = step > 0

@@ -116,10 +116,10 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
 }
 
 template <int Dim>
-void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction) {
+void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction, Items some) {
   const auto timing = scene.clock.time(Stage::nodes);
   const double lightest = lightest_node(scene);
-  parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) {
+  parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
     const Lane* const momentum = scene.nodes.momentum(b);
     scene.nodes.add_force(scene.blocks, b);
@@ -173,7 +173,7 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
   template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);         \
   template void velocity_from_momentum<Dim>(Scene<Dim>&, Items);               \
   template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items);    \
-  template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*);     \
+  template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*, Items);     \
   template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&); \
   template MotionUpdate<Dim> motion_update<Dim>(Scene<Dim>&, double, ColumnId);
 SLUICE_INSTANTIATE(2)

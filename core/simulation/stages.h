@@ -43,7 +43,7 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
 /// a correction, for example by a pressure that was not known before. `without_friction`, or null, has in its force
 /// tiles a part of all forces, whose pressure on faces gives no friction.
 template <int Dim>
-void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction);
+void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction, Items some = everything);
 
 /// Calls body(number of the block, block, workspace of the thread) for every block of particles, in parallel.
 template <int Dim, class Body>

@@ -28,6 +28,11 @@ void Sweep<Dim>::run(std::size_t blocks_per_thread) const {
   }
 }
 
+template <int Dim>
+void Sweep<Dim>::run() const {
+  run(blocks_.particle_blocks().size() <= few_blocks ? few_blocks : usual_pace);
+}
+
 template class Sweep<2>;
 template class Sweep<3>;
 

@@ -28,7 +28,10 @@ class Sweep {
   /// The first stage does this many blocks for each thread at a time: few, so that they stay in the cache until the
   /// last stage has done them, but many against those in work when the threads wait for each other. Measured.
   static constexpr std::size_t usual_pace = 96;
-  void run(std::size_t blocks_per_thread = usual_pace) const;
+  /// So few blocks, some 5 MiB of tiles and particles for each of two threads, are done at one go.
+  static constexpr std::size_t few_blocks = 512;
+  void run(std::size_t blocks_per_thread) const;
+  void run() const;
 
  private:
   struct Entry {

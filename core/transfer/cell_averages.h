@@ -5,7 +5,7 @@
 
 #include "core/grid/blocks.h"
 #include "core/grid/geometry.h"
-#include "core/transfer/shape_kernels.h"
+#include "core/transfer/cell_tile.h"
 
 namespace sluice {
 
@@ -27,8 +27,6 @@ class CellAverages {
   void mean(const Blocks<Dim>& blocks, std::size_t number, const BlockParticles<Dim>& block, double* mean) const;
 
  private:
-  static constexpr int width = block_width<Dim> + 2 * tile_margin;
-  static constexpr std::size_t tile_cells = power(width, Dim);
   struct Sums {
     double weight = 0, product = 0;
   };

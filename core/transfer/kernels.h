@@ -443,24 +443,70 @@ SLUICE_MULTITARGET void gather_field(const BlockParticles<Dim>& block, const Lan
   }
 }
 
+/// Weights of one node along one axis, for a lane of the motion: `slope` for component `axis`, `value` for the others.
+SLUICE_ALWAYS_INLINE Lane divergence_weights(double value, double slope, int axis) {
+  Lane w{value, value, value, value};
+  w[axis] = slope;
+  return w;
+}
+
+/// {dvx/dx, dvy/dy, dvx, dvy} of one particle in 2-D, {dvx/dx, dvy/dy, dvz/dz, 0} and {dvx, dvy, dvz, 0} in 3-D: one
+/// product a node and lane, because each component has slopes along its own axis only.
+template <int Dim, class Shape>
+SLUICE_ALWAYS_INLINE void sum_divergence(const ChunkWeights<Dim, Shape>& w, int p, const Lane* motion_tile, Lane* out) {
+  constexpr int nodes = Shape::degree + 1, lanes = motion_lanes<Dim>;
+  const Lane* const origin = motion_tile + w.base[p] * lanes;
+  Lane along_x[nodes], along_y[nodes], along_z[Dim == 3 ? nodes : 1];
+  for (int i = 0; i < nodes; ++i) {
+    along_x[i] = divergence_weights(w.value[0][i][p], w.slope[0][i][p], 0);
+    along_y[i] = divergence_weights(w.value[1][i][p], w.slope[1][i][p], 1);
+    if constexpr (Dim == 3) along_z[i] = divergence_weights(w.value[2][i][p], w.slope[2][i][p], 2);
+  }
+  Lane sum[lanes] = {};
+  for (int k = 0; k < (Dim == 3 ? nodes : 1); ++k) {
+    Lane plane[lanes] = {};
+    for (int j = 0; j < nodes; ++j) {
+      Lane row[lanes] = {};
+      const Lane* const node = origin + (j * tile_stride<Dim, Shape>(1) + k * tile_stride<Dim, Shape>(2)) * lanes;
+      for (int i = 0; i < nodes; ++i) {
+        row[0] += along_x[i] * node[i * lanes];
+        if constexpr (Dim == 3) row[1] += w.value[0][i][p] * node[i * lanes + 1];
+      }
+      plane[0] += along_y[j] * row[0];
+      if constexpr (Dim == 3) plane[1] += w.value[1][j][p] * row[1];
+    }
+    if constexpr (Dim == 3) {
+      sum[0] += along_z[k] * plane[0];
+      sum[1] += w.value[2][k][p] * plane[1];
+    } else {
+      sum[0] = plane[0];
+    }
+  }
+  for (int l = 0; l < lanes; ++l) out[l] = sum[l];
+}
+
 template <int Dim, class Shape>
 SLUICE_MULTITARGET void gather_divergence(const BlockParticles<Dim>& block, const Lane* motion_tile, double* divergence,
                                           const std::array<double*, Dim>& change) {
+  constexpr int lanes = motion_lanes<Dim>, numbers = lanes * lane_width;
   ChunkWeights<Dim, Shape> w;
-  ChunkGathered<Dim> g;
+  alignas(64) Lane sums[chunk_size * lanes];
+  const double* __restrict sum = reinterpret_cast<const double*>(sums);
   for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
     const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
     weigh<Dim, Shape, false, false>(block, begin, count, w);
-    sum_chunk<Dim, Shape, true, true, false>(w, count, motion_tile, g);
-    double* __restrict sum = divergence + begin;
-    write_component(g.gradient[0], 0, count, sum);
-    for (int a = 1; a < Dim; ++a) {
-      const double* __restrict slope = g.numbers(g.gradient[a]) + a;
+    for (int p = 0; p < count; ++p) sum_divergence<Dim, Shape>(w, p, motion_tile, sums + p * lanes);
+    double* __restrict out = divergence + begin;
 #pragma omp simd
-      for (int p = 0; p < count; ++p) sum[p] += slope[4 * p];
+    for (int p = 0; p < count; ++p) {
+      const double* s = sum + numbers * p;
+      out[p] = Dim == 2 ? s[0] + s[1] : s[0] + s[1] + s[2];
     }
-    for (int a = 0; a < Dim; ++a)
-      write_component(g.value[motion_lanes<Dim> - 1], Dim == 2 ? 2 + a : a, count, change[a] + begin);
+    for (int a = 0; a < Dim; ++a) {
+      double* __restrict component = change[a] + begin;
+#pragma omp simd
+      for (int p = 0; p < count; ++p) component[p] = sum[numbers * p + (Dim == 2 ? 2 : lane_width) + a];
+    }
   }
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel/multitarget.h"
+
 namespace sluice {
 
 namespace {
@@ -37,7 +39,6 @@ void PoreWater<Dim>::declare(Particles& particles, bool with_body_force) {
   solid_mass_ = columns.declare({"solid_mass", "kg", 1, state, "Mass of the grains.", false});
   inertia_ =
       columns.declare({"skeleton_inertia", "kg", 1, state, "Least mass that elastic waves set in motion.", false});
-  wet_volume_ = columns.declare({"wet_volume", "m3", 1, derived, "Volume, where the pores are full of water.", false});
   divergence_ = columns.declare({"divergence", "1/s", 1, derived, "Divergence of the predicted velocity.", false});
   acceleration_ = columns.declare({"predicted_change", "m/s", Dim, derived, "Predicted change of velocity.", false});
   new_pressure_ = columns.declare({"new_pore_pressure", "Pa", 1, derived, "Pressure at the end of the step.", false});
@@ -133,7 +134,6 @@ SkeletonLoads<Dim> PoreWater<Dim>::skeleton_loads(Scene<Dim>& scene, const Exter
 
 // ---- forces ----
 
-/// Outside pressure at the particles, and the force -V grad P that goes with it.
 template <int Dim>
 void PoreWater<Dim>::take_outside_pressure(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
                                            const ExternalPressure<Dim>& outside) {
@@ -149,7 +149,7 @@ void PoreWater<Dim>::take_outside_pressure(Scene<Dim>& scene, const ParticleBloc
 
 template <int Dim>
 void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
-                                    const ExternalPressure<Dim>& outside) {
+                                    const ExternalPressure<Dim>& outside, ScatterWhat what) {
   Columns& columns = scene.particles.columns;
   ScatterInput<Dim> in = scene.scatter_input(block);
   const double* pressure = columns.data(pressure_);
@@ -167,8 +167,12 @@ void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const Part
       for (std::uint32_t p = block.begin; p < block.end; ++p) total[p] += here[p];
       in.body_force[a] = columns.data(body_force_, a);
     }
+    // Body forces go with the forces alone.
+    if (what == ScatterWhat::momentum_and_force)
+      scene.shape->scatter(ScatterWhat::momentum, in, 0, scene.nodes.momentum_tile(b), nullptr);
+    what = ScatterWhat::force;
   }
-  scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, scene.nodes.force_tile(b));
+  scene.shape->scatter(what, in, 0, scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
 }
 
 template <int Dim>
@@ -239,31 +243,17 @@ void PoreWater<Dim>::scatter_pressure(Scene<Dim>& scene, std::size_t b, const Pa
 // ---- to cells and vertices ----
 
 template <int Dim>
-std::array<double, Dim> PoreWater<Dim>::mobility(const PoreSpace& space, double porosity) const {
-  std::array<double, Dim> mobility{};
-  if (space.liquid) return mobility;
-  const double factor = space.kozeny_carman ? kozeny_carman(porosity) * space.per_initial_kozeny_carman : 1;
+Mobility<Dim> PoreWater<Dim>::mobility(const PoreSpace& space) const {
   // Soil that falls apart has a porosity near one and a permeability without bound: u-p holds up to a limit only.
   const double coarsest = water_.formulation == Formulation::u_p ? coarsest_u_p : infinity;
-  for (std::size_t a = 0; a < Dim; ++a)
-    mobility[a] = std::min(factor * space.permeability[a], coarsest) / (water_.density * standard_gravity);
+  const double weight = water_.density * standard_gravity;
+  Mobility<Dim> mobility;
+  mobility.constant = space.kozeny_carman ? 0 : 1;
+  mobility.per_kozeny_carman = space.kozeny_carman ? space.per_initial_kozeny_carman : 0;
+  mobility.most = coarsest / weight;
+  for (std::size_t a = 0; a < space.permeability.size(); ++a) mobility.initial[a] = space.permeability[a] / weight;
   return mobility;
 }
-
-namespace {
-
-/// The cell of a point in the tile of its block; points outside count to the rim.
-template <int Dim>
-std::size_t place_in_tile(const GridGeometry<Dim>& grid, const Index<Dim>& first_cell, const Vector<Dim>& x) {
-  constexpr int width = PressureGrid<Dim>::cell_tile_width;
-  const Index<Dim> cell = grid.cell_of(x);
-  std::size_t place = 0;
-  for (int a = Dim - 1; a >= 0; --a)
-    place = place * width + static_cast<std::size_t>(std::clamp(cell[a] - first_cell[a] + tile_margin, 0, width - 1));
-  return place;
-}
-
-}  // namespace
 
 template <int Dim>
 double PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
@@ -289,106 +279,80 @@ void PoreWater<Dim>::collect_at_rest(Scene<Dim>& scene, PressureEquation<Dim>& e
 template <int Dim>
 double PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
                            const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation) {
-  CellSums<Dim>* const cells = equation.cell_sums(b);
-  std::fill_n(cells, PressureGrid<Dim>::cell_tile, CellSums<Dim>{});
-  Columns& columns = scene.particles.columns;
-  const BlockParticles<Dim> view = scene.view(block);
-  std::array<const double*, Dim> change;
-  for (int a = 0; a < Dim; ++a) change[a] = columns.data(acceleration_, a);
-
-  const double* volume = columns.data(scene.particles.volume);
-  const double* mass = columns.data(scene.particles.mass);
-  const double* porosity = columns.data(porosity_);
-  const double* wet = columns.data(wet_);
-  double* wet_volume = columns.data(wet_volume_);
-  std::array<const double*, Dim> slope;
-  for (int a = 0; a < Dim; ++a) slope[a] = columns.data(pressure_gradient_, a);
-  double dissipated = 0;
-  const double compressibility = water_.compressibility();
-  const double per_kick = 1 / kick;
-  for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
-    const Batch& batch = scene.blocks.batches()[k];
-    const PoreSpace& space = spaces_[static_cast<std::size_t>(batch.material)];
-    const double modulus = materials_[static_cast<std::size_t>(batch.material)].elasticity().constrained_modulus();
-    const double compliance = modulus > 0 ? 1 / modulus : 0;
-    for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
-      wet_volume[p] = wet[p] != 0 ? volume[p] : 0;
-      if (wet[p] == 0) continue;
-      Vector<Dim> x;
-      for (int a = 0; a < Dim; ++a) x[a] = view.position[a][p];
-      CellSums<Dim>& cell = cells[place_in_tile<Dim>(scene.grid, view.first_cell, x)];
-      const double v = volume[p], n = porosity[p], specific = v / mass[p], lightness = water_.density * specific;
-      cell.volume += v;
-      cell.inverse_density += v * specific;
-      cell.compliance += v * compliance;
-      cell.storage += v * n * compressibility;
-      if (space.liquid) continue;
-      const auto k_over_weight = mobility(space, n);
-      if (relative[0] == nullptr) {
-        for (std::size_t a = 0; a < Dim; ++a) {
-          const double mobile = v * k_over_weight[a];
-          const double drive = water_.density * (scene.gravity[a] - change[a][p] * per_kick),
-                       excess = drive - slope[a][p];
-          cell.mobility[a] += mobile;
-          cell.push[a] += mobile * drive;
-          dissipated += mobile * excess * excess;
-        }
-        continue;
-      }
-      // mu / (n^2 dt), mu = m_s m_w / rho per volume
-      const double inertial = water_.density / n * (1 - n * lightness) * per_kick;
-      for (std::size_t a = 0; a < Dim; ++a) {
-        const double resistance = 1 / k_over_weight[a], flux = n * relative[a][p];
-        // 1 - rho_w / rho is the share of the relative velocity that counts beside that of the mixture.
-        const double mobile = v * (1 - lightness) / (resistance + inertial);
-        const double drive = water_.density * (scene.gravity[a] - change[a][p] * per_kick);
-        cell.mobility[a] += mobile;
-        cell.push[a] += mobile * (drive + inertial * flux);
-        dissipated += v * flux * flux * resistance;
-      }
-    }
+  std::fill_n(equation.cell_sums(b), cell_tile<Dim>, CellSums<Dim>{});
+  std::fill_n(equation.vertex_tile(b), PressureGrid<Dim>::vertex_tile, Lane{});
+  const Columns& columns = scene.particles.columns;
+  WaterBatch<Dim> batch{.particles = scene.view(block),
+                        .volume = columns.data(scene.particles.volume),
+                        .mass = columns.data(scene.particles.mass),
+                        .porosity = columns.data(porosity_),
+                        .wet = columns.data(wet_),
+                        .pressure = columns.data(pressure_),
+                        .divergence = columns.data(divergence_),
+                        .relative = relative,
+                        .compressibility = water_.compressibility(),
+                        .density = water_.density,
+                        .kick = kick,
+                        .gravity = scene.gravity};
+  for (int a = 0; a < Dim; ++a) {
+    batch.pressure_gradient[a] = columns.data(pressure_gradient_, a);
+    batch.change[a] = columns.data(acceleration_, a);
   }
-
-  // {V, V p, V div v} to the vertices, with the pressure continued to them by its gradient.
-  ScatterInput<Dim> in = scene.scatter_input(block);
-  in.mass = wet_volume;
-  in.velocity.fill(columns.data(zero_));
-  in.velocity[0] = columns.data(pressure_);
-  in.velocity[1] = columns.data(divergence_);
-  in.affine.fill(columns.data(zero_));
-  for (int a = 0; a < Dim; ++a) in.affine[static_cast<std::size_t>(a)] = columns.data(pressure_gradient_, a);
-  linear_->scatter(ScatterWhat::momentum, in, 0, equation.vertex_tile(b), nullptr);
+  double dissipated = 0;
+  for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
+    const Batch& particles = scene.blocks.batches()[k];
+    const auto m = static_cast<std::size_t>(particles.material);
+    const double modulus = materials_[m].elasticity().constrained_modulus();
+    batch.particles.begin = particles.begin;
+    batch.particles.end = particles.end;
+    batch.liquid = spaces_[m].liquid;
+    batch.mobility = mobility(spaces_[m]);
+    batch.compliance = modulus > 0 ? 1 / modulus : 0;
+    dissipated += add_water(batch, equation.cell_sums(b), equation.vertex_tile(b));
+  }
   return dissipated;
 }
 
 // ---- volumes ----
+
+namespace pore_water {
+
+/// Eq. (50) for consecutive particles of one material; `grains` and `water` are densities. (Multi-target functions need
+/// external linkage: the linker chooses among their clones.)
+SLUICE_MULTITARGET void follow(std::size_t count, double grains, double water, const double* __restrict volume,
+                               const double* __restrict solid, const double* __restrict wet,
+                               double* __restrict porosity, double* __restrict mass, double* __restrict inertia,
+                               bool inertia_follows) {
+  const double per_grains = 1 / grains;
+#pragma GCC ivdep
+  for (std::size_t p = 0; p < count; ++p) {
+    const double n = 1 - solid[p] * per_grains / volume[p];
+    porosity[p] = n;
+    mass[p] = solid[p] + wet[p] * n * water * volume[p];
+  }
+  if (inertia_follows) std::copy_n(mass, count, inertia);
+}
+
+}  // namespace pore_water
 
 template <int Dim>
 void PoreWater<Dim>::follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& block) {
   Columns& columns = scene.particles.columns;
   double* volume = columns.data(scene.particles.volume);
   double* mass = columns.data(scene.particles.mass);
-  double* porosity = columns.data(porosity_);
-  double* inertia = columns.data(inertia_);
-  const double* solid = columns.data(solid_mass_);
-  const double* wet = columns.data(wet_);
-  const bool follows = water_.formulation == Formulation::u_p;
   for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
     const Batch& batch = scene.blocks.batches()[k];
     const auto m = static_cast<std::size_t>(batch.material);
     const PoreSpace& space = spaces_[m];
     const double density = materials_[m].density();
+    const std::uint32_t p = batch.begin;
     if (space.liquid) {
       // Its volume is that of its mass: strains hold errors of the projection, which would add up.
-      for (std::uint32_t p = batch.begin; p < batch.end; ++p) volume[p] = mass[p] / density;
+      for (std::uint32_t q = p; q < batch.end; ++q) volume[q] = mass[q] / density;
     } else if (space.saturated) {
-      const double grains = density / (1 - space.porosity);  // their density
-      for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
-        const double n = 1 - solid[p] / (grains * volume[p]);
-        porosity[p] = n;
-        mass[p] = solid[p] + wet[p] * n * water_.density * volume[p];
-        if (follows) inertia[p] = mass[p];
-      }
+      pore_water::follow(batch.end - p, density / (1 - space.porosity), water_.density, volume + p,
+                         columns.data(solid_mass_) + p, columns.data(wet_) + p, columns.data(porosity_) + p, mass + p,
+                         columns.data(inertia_) + p, water_.formulation == Formulation::u_p);
     }
   }
 }
@@ -430,6 +394,22 @@ double PoreWater<Dim>::fastest_sound(const Particles& particles) const {
                                                            : (modulus + wet) / density);
   }
   return std::sqrt(fastest);
+}
+
+template <int Dim>
+typename PoreWater<Dim>::OutsideSums PoreWater<Dim>::outside_sums(const Scene<Dim>& scene,
+                                                                  const ParticleBlock<Dim>& block) const {
+  const Columns& columns = scene.particles.columns;
+  const double* pressure = columns.data(outside_pressure_);
+  const double* volume = columns.data(scene.particles.volume);
+  OutsideSums sums;
+  for (std::uint32_t p = block.begin; p < block.end; ++p) sums.pressure_volume += pressure[p] * volume[p];
+  for (int a = 0; a < Dim; ++a) {
+    const double* force = columns.data(body_force_, a);
+    const double* position = columns.data(scene.particles.position, a);
+    for (std::uint32_t p = block.begin; p < block.end; ++p) sums.force_position += force[p] * position[p];
+  }
+  return sums;
 }
 
 template <int Dim>

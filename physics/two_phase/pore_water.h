@@ -8,6 +8,7 @@
 #include "physics/initial_stress/initial_stress.h"
 #include "physics/loads/external_pressure.h"
 #include "physics/materials/materials.h"
+#include "physics/two_phase/cell_sums.h"
 #include "physics/two_phase/pressure_equation.h"
 #include "physics/two_phase/water.h"
 
@@ -45,9 +46,10 @@ class PoreWater {
   /// Which blocks hold water.
   std::vector<char> wet_blocks(const Scene<Dim>& scene) const;
 
-  /// Forces on the nodes from the total stress sigma' - beta p, from outside pressure and its gradient.
+  /// Forces on the nodes from the total stress sigma' - beta p, from outside pressure and its gradient; `what` is
+  /// `force` or `momentum_and_force`.
   void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
-                      const ExternalPressure<Dim>& outside);
+                      const ExternalPressure<Dim>& outside, ScatterWhat what);
 
   /// Particles of a block to its cells and vertices: eq. (45). The nodes have the velocities of the predictor.
   /// `relative` holds the velocities of the water relative to the solid, or nulls where it has no inertia of its own.
@@ -80,15 +82,25 @@ class PoreWater {
   /// Largest speed of sound, where no drag holds the water back [m/s].
   double fastest_sound(const Particles& particles) const;
 
+  /// Sums of P V and of f x over the particles of a block, with the outside pressure P and the force f = -V grad P of
+  /// the predictor [J]. Where volumes change, P does the work of minus what is gained of the first; where positions
+  /// change, f does that of the second.
+  struct OutsideSums {
+    double pressure_volume = 0, force_position = 0;
+  };
+  OutsideSums outside_sums(const Scene<Dim>& scene, const ParticleBlock<Dim>& block) const;
+
   /// Energy stored in the compressed water [J].
   double compression_energy(const Particles& particles) const;
 
-  /// k / gamma_w along each axis [m2/(Pa s)] of a material at a porosity.
-  std::array<double, Dim> mobility(const PoreSpace& space, double porosity) const;
+  /// How easily water passes a material.
+  Mobility<Dim> mobility(const PoreSpace& space) const;
 
- private:
+  /// Outside pressure at the particles, and the force that goes with it; `scatter_forces` does it, too.
   void take_outside_pressure(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
                              const ExternalPressure<Dim>& outside);
+
+ private:
   double sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
              const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
   /// Forces of `stress`, a column, along all axes to a force tile.
@@ -100,8 +112,8 @@ class PoreWater {
   const Materials<Dim>& materials_;
   std::unique_ptr<ShapeKernels<Dim>> linear_;
 
-  ColumnId pressure_, pressure_gradient_, porosity_, solid_mass_, inertia_, wet_;         // state
-  ColumnId wet_volume_, divergence_, acceleration_, new_pressure_, total_stress_, zero_;  // derived
+  ColumnId pressure_, pressure_gradient_, porosity_, solid_mass_, inertia_, wet_;  // state
+  ColumnId divergence_, acceleration_, new_pressure_, total_stress_, zero_;        // derived
   ColumnId outside_pressure_, body_force_;
 };
 

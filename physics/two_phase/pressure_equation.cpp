@@ -51,8 +51,10 @@ template <int Dim>
 void PressureEquation<Dim>::prepare(const Scene<Dim>& scene, const std::vector<char>& wet) {
   wet_ = wet;
   const std::size_t blocks = scene.blocks.particle_blocks().size();
-  cell_sums_.resize(blocks * Grid::cell_tile);
+  // Dry blocks keep their zeros.
+  cell_sums_.assign(blocks * cell_tile<Dim>, {});
   vertex_tiles_.resize(blocks * Grid::vertex_tile);
+  std::fill_n(vertex_tiles_.data(), blocks * Grid::vertex_tile, Lane{});
   if (!grid_.empty()) grid_.locate(scene.blocks);
 }
 
@@ -61,10 +63,10 @@ template <int Dim>
 bool PressureEquation<Dim>::covered(const Scene<Dim>& scene) const {
   if (grid_.empty()) return false;
   for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b) {
-    if (!is_wet(b)) continue;
+    if (!is_wet(b) || !grid_.has_gaps(b)) continue;
     const std::int32_t* const cell = grid_.cells_of_tile(b);
-    for (std::size_t n = 0; n < Grid::cell_tile; ++n)
-      if (cell[n] < 0 && cell_sums_[b * Grid::cell_tile + n].volume > 0) return false;
+    for (std::size_t n = 0; n < cell_tile<Dim>; ++n)
+      if (cell[n] < 0 && cell_sums_[b * cell_tile<Dim> + n].volume > 0) return false;
   }
   return true;
 }
@@ -74,11 +76,11 @@ void PressureEquation<Dim>::rebuild(const Scene<Dim>& scene) {
   std::vector<Index<Dim>> places;
   for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b) {
     if (!is_wet(b)) continue;
-    for (std::size_t n = 0; n < Grid::cell_tile; ++n) {
-      if (!(cell_sums_[b * Grid::cell_tile + n].volume > 0)) continue;
+    for (std::size_t n = 0; n < cell_tile<Dim>; ++n) {
+      if (!(cell_sums_[b * cell_tile<Dim> + n].volume > 0)) continue;
       Index<Dim> place = scene.blocks.particle_blocks()[b].first_cell;
-      for (int a = 0, rest = static_cast<int>(n); a < Dim; ++a, rest /= Grid::cell_tile_width)
-        place[a] += rest % Grid::cell_tile_width - tile_margin;
+      for (int a = 0, rest = static_cast<int>(n); a < Dim; ++a, rest /= cell_tile_width<Dim>)
+        place[a] += rest % cell_tile_width<Dim> - tile_margin;
       places.push_back(place);
     }
   }
@@ -93,6 +95,7 @@ void PressureEquation<Dim>::build(const std::vector<Index<Dim>>& wet_cells) {
   grid_.build(wet_cells, geometry_);
   const auto lattice = grid_.places();
   solver_.analyze(grid_.pattern(), nested_dissection<Dim>(lattice));
+  change_.assign(grid_.vertices().size(), 0);
 }
 
 template <int Dim>
@@ -100,6 +103,7 @@ void PressureEquation<Dim>::store(Archive& archive) const {
   auto& cells = archive.integers["pressure_cells"];
   for (const auto& place : built_from_) cells.insert(cells.end(), place.begin(), place.end());
   const auto state = solver_.state();
+  archive.reals["pressure_change"] = change_;
   archive.reals["pressure_factorized"] = state.factorized_values;
   archive.reals["pressure_counters"] = state.counters;
 }
@@ -111,30 +115,38 @@ void PressureEquation<Dim>::restore(const Archive& archive) {
   for (std::size_t i = 0; i < cells.size(); ++i) places[i / Dim][i % Dim] = static_cast<int>(cells[i]);
   if (places.empty()) return;
   build(places);
+  change_ = archive.reals.at("pressure_change");
   solver_.restore({archive.reals.at("pressure_factorized"), archive.reals.at("pressure_counters")});
 }
 
-/// Sums of cells and vertices over the tiles, in the order of the blocks.
+namespace {
+
+/// Calls add(entry) for the entries of tiles that belong to one cell or vertex, in the order of the blocks.
+template <std::size_t Most, class Add>
+SLUICE_ALWAYS_INLINE void for_entries(const std::array<std::int32_t, Most>& entries, const Add& add) {
+  for (const std::int32_t entry : entries) {
+    if (entry < 0) return;
+    add(static_cast<std::size_t>(entry));
+  }
+}
+
+}  // namespace
+
 template <int Dim>
-void PressureEquation<Dim>::sum_tiles() {
+void PressureEquation<Dim>::sum_cells() {
   sums_.resize(grid_.cells().size());
   parallel_shares(sums_.size(), [&](std::size_t c) {
     CellSums<Dim> sum;
-    for (const std::int32_t entry : grid_.cell_entries(c)) {
-      const auto at = static_cast<std::size_t>(entry);
-      if (entry >= 0 && is_wet(at / Grid::cell_tile)) sum.add(cell_sums_[at]);
-    }
+    for_entries(grid_.cell_entries(c), [&](std::size_t at) { sum.add(cell_sums_[at]); });
     sums_[c] = sum;
   });
-  lanes_.resize(grid_.vertices().size());
-  parallel_shares(lanes_.size(), [&](std::size_t v) {
-    Lane sum{};
-    for (const std::int32_t entry : grid_.vertex_entries(v)) {
-      const auto at = static_cast<std::size_t>(entry);
-      if (entry >= 0 && is_wet(at / Grid::vertex_tile)) sum += vertex_tiles_.data()[at];
-    }
-    lanes_[v] = sum;
-  });
+}
+
+template <int Dim>
+Lane PressureEquation<Dim>::vertex_sum(std::size_t v) const {
+  Lane sum{};
+  for_entries(grid_.vertex_entries(v), [&](std::size_t at) { sum += vertex_tiles_.data()[at]; });
+  return sum;
 }
 
 // ---- coefficients ----
@@ -142,42 +154,65 @@ void PressureEquation<Dim>::sum_tiles() {
 /// Eqs. (44) and (47): what multiplies the Laplacian of the new and of the old pressure.
 template <int Dim>
 typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(const CellSums<Dim>& sums,
-                                                                            const PressureStep& step) const {
+                                                                            const StepConstants& step) const {
   CellState cell;
   if (!(sums.volume > 0)) return cell;
   const double inverse = 1 / sums.volume, specific = sums.inverse_density * inverse;
   const double lightness = water_.density * specific;  // rho_w / rho
-  cell.storage = sums.storage * inverse / step.dt;
-  const double compliance = step.stabilised ? sums.compliance * inverse : 0;
-  for (int a = 0; a < Dim; ++a) {
-    const double h = geometry_.cell[a], mobility = sums.mobility[a] * inverse;
-    const double projection = step.kick * specific + mobility * (1 - lightness);
-    // At most as soft as a skeleton in which an elastic wave crosses a fiftieth of a cell.
-    const double softest = 2500 * step.dt * step.dt * specific / (h * h);
-    const double wanted = h * h * std::min(compliance, softest) / (4 * step.dt);
+  const double inertial = step.kick * specific;
+  cell.storage = sums.storage * inverse * step.corner_volume_per_dt;
+  // At most as soft as a skeleton in which an elastic wave crosses a fiftieth of a cell.
+  const double compliance = sums.compliance * inverse;
+  cell.steadied = compliance > 0 ? inertial * step.steadied : 0;
+  for (std::size_t a = 0; a < Dim; ++a) {
+    const double mobility = sums.mobility[a] * inverse, push = sums.push[a] * inverse;
+    const double projection = inertial + mobility * (1 - lightness);
+    const double wanted = step.stabilised[a] * std::min(compliance, step.softest[a] * specific);
     // The acceleration in Darcy's law holds the old pressure; explicitly, that is unstable where rho < 2 rho_w and the
     // soil is coarse.
-    const double lagged = (lightness - 0.4) * mobility - step.kick * specific;
-    const double stabilisation = std::max({0.0, wanted - projection, lagged});
-    cell.implicit[a] = projection + stabilisation;
-    cell.old[a] = water_.increment * (projection - mobility) + stabilisation;
-    cell.push[a] = sums.push[a] * inverse;
+    const double lagged = (lightness - 0.4) * mobility - inertial;
+    const double stabilisation = std::max(0.0, std::max(wanted - projection, lagged));
+    const double implicit = projection + stabilisation;
+    const double old = water_.increment * (projection - mobility) + stabilisation;
+    for (std::size_t n = 0; n < Grid::corners; ++n) {
+      cell.implicit[n] += implicit * integrals_.laplacian[a][n];
+      cell.old[n] += old * integrals_.laplacian[a][n];
+      cell.push[n] += push * integrals_.slope[a][n];
+    }
   }
   return cell;
+}
+
+template <int Dim>
+typename PressureEquation<Dim>::StepConstants PressureEquation<Dim>::constants(const PressureStep& step) const {
+  const double corner_volume = geometry_.cell_volume() / Grid::corners;
+  StepConstants constants{.kick = step.kick,
+                          .corner_volume_per_dt = corner_volume / step.dt,
+                          .steadied = step.stabilised ? 1.5 * corner_volume : 0};
+  for (std::size_t a = 0; a < Dim; ++a) {
+    const double h = geometry_.cell[a];
+    constants.stabilised[a] = step.stabilised ? h * h / (4 * step.dt) : 0;
+    constants.softest[a] = 2500 * step.dt * step.dt / (h * h);
+  }
+  return constants;
 }
 
 /// A cell with little or no water beside a vertex that is inside takes the coefficients of the cells around it.
 template <int Dim>
 void PressureEquation<Dim>::set_cells(const PressureStep& step) {
   const double least = least_fill * geometry_.cell_volume();
+  const StepConstants of_step = constants(step);
   cells_.resize(sums_.size());
   parallel_shares(cells_.size(), [&](std::size_t c) {
+    if (sums_[c].volume >= least) {
+      cells_[c] = cell_state(sums_[c], of_step);
+      return;
+    }
     CellSums<Dim> sums = sums_[c];
-    if (sums.volume < least)
-      for (const std::int32_t v : grid_.cells()[c].vertex)
-        for (const std::int32_t other : grid_.vertices()[static_cast<std::size_t>(v)].cell)
-          if (other >= 0) sums.add(sums_[static_cast<std::size_t>(other)]);
-    cells_[c] = cell_state(sums, step);
+    for (const std::int32_t v : grid_.cells()[c].vertex)
+      for (const std::int32_t other : grid_.vertices()[static_cast<std::size_t>(v)].cell)
+        if (other >= 0) sums.add(sums_[static_cast<std::size_t>(other)]);
+    cells_[c] = cell_state(sums, of_step);
   });
 }
 
@@ -188,15 +223,17 @@ bool PressureEquation<Dim>::on_face(const Index<Dim>& place, int axis, int side)
   return place[axis] == (side == 0 ? 0 : geometry_.cells[axis]);
 }
 
-/// Inside is a vertex more than half of whose surroundings, in the grid, are wet: on a flat surface, that lies below
-/// it.
+/// Sums of the vertices, and what they make of them. Inside is a vertex more than half of whose surroundings, in the
+/// grid, are wet: on a flat surface, that lies below it.
 template <int Dim>
 void PressureEquation<Dim>::classify(const PressureStep& step) {
   const std::size_t count = grid_.vertices().size();
   const double g = unit_weight_;
   fill_.resize(count), kind_.resize(count), given_.resize(count), old_.resize(count), pressure_.resize(count);
+  lanes_.resize(count);
   parallel_shares(count, [&](std::size_t v) {
     const auto& vertex = grid_.vertices()[v];
+    lanes_[v] = vertex_sum(v);
     const double volume = lanes_[v][0];
     fill_[v] = volume / (vertex.share * geometry_.cell_volume());
     kind_[v] = fill_[v] > 0.5 + 1e-6 ? Kind::inside : Kind::outside;
@@ -221,37 +258,75 @@ void PressureEquation<Dim>::classify(const PressureStep& step) {
 
 namespace {
 
-/// [m][n]: the place in the stencil of corner m of a cell at which corner n lies.
+/// [n][k]: which coupling of cell k around a vertex (m ^ n of its corners) is one with the vertex at place n of the
+/// stencil; -1: that vertex is no corner of the cell.
 template <int Dim>
-constexpr auto neighbour_places = [] {
+constexpr auto couplings_of_cells = [] {
   constexpr std::size_t corners = power(2, Dim);
-  std::array<std::array<std::size_t, corners>, corners> places{};
-  for (std::size_t m = 0; m < corners; ++m)
-    for (std::size_t n = 0; n < corners; ++n)
-      for (int a = Dim - 1; a >= 0; --a) places[m][n] = 3 * places[m][n] + 1 + (n >> a & 1) - (m >> a & 1);
-  return places;
+  std::array<std::array<int, corners>, power(3, Dim)> couplings{};
+  for (auto& of_place : couplings) of_place.fill(-1);
+  for (std::size_t k = 0; k < corners; ++k)
+    for (std::size_t n = 0; n < corners; ++n) {
+      const std::size_t m = corners - 1 - k;  // the corner that the vertex is
+      std::size_t place = 0;
+      for (int a = Dim - 1; a >= 0; --a) place = 3 * place + 1 + (n >> a & 1) - (m >> a & 1);
+      couplings[place][k] = static_cast<int>(m ^ n);
+    }
+  return couplings;
 }();
 
 }  // namespace
 
+/// Written out for each place of the stencil when compiled: no branches, and sums in registers.
 template <int Dim>
 typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Grid::Vertex& vertex) const {
-  Row row;
-  for (std::size_t k = 0; k < Grid::corners; ++k) {
-    if (vertex.cell[k] < 0) continue;
-    const CellState& cell = cells_[static_cast<std::size_t>(vertex.cell[k])];
-    const std::size_t m = Grid::corners - 1 - k;
-    row.storage += cell.storage * geometry_.cell_volume() / Grid::corners;
-    for (std::size_t a = 0; a < Dim; ++a) row.push += integrals_.slope[a][m] * cell.push[a];
-    for (std::size_t n = 0; n < Grid::corners; ++n) {
-      const std::size_t place = neighbour_places<Dim>[m][n];
-      for (std::size_t a = 0; a < Dim; ++a) {
-        row.implicit[place] += cell.implicit[a] * integrals_.laplacian[a][m][n];
-        row.old[place] += cell.old[a] * integrals_.laplacian[a][m][n];
-      }
+  static const CellState nothing{};
+  std::array<const CellState*, Grid::corners> cell;
+  for (std::size_t k = 0; k < Grid::corners; ++k)
+    cell[k] = vertex.cell[k] >= 0 ? cells_.data() + vertex.cell[k] : &nothing;
+  const auto coupling = [&]<std::size_t n>(const auto CellState::*kind) {
+    double sum = 0;
+    [&]<std::size_t... k>(std::index_sequence<k...>) {
+      (
+          [&] {
+            constexpr int c = couplings_of_cells<Dim>[n][k];
+            if constexpr (c >= 0) sum += (cell[k]->*kind)[static_cast<std::size_t>(c)];
+          }(),
+          ...);
     }
+    (std::make_index_sequence<Grid::corners>());
+    return sum;
+  };
+  Row row;
+  [&]<std::size_t... n>(std::index_sequence<n...>) {
+    ((row.implicit[n] = coupling.template operator()<n>(&CellState::implicit)), ...);
+    ((row.old[n] = coupling.template operator()<n>(&CellState::old)), ...);
+  }
+  (std::make_index_sequence<Grid::stencil>());
+  for (std::size_t k = 0; k < Grid::corners; ++k) {
+    row.storage += cell[k]->storage;
+    row.steadied += cell[k]->steadied;
+    row.push += cell[k]->push[Grid::corners - 1 - k];
   }
   return row;
+}
+
+/// How unevenly particles lie around a vertex inside, eq. (47a): from the slopes of the fill, unless those are the
+/// surface's [1/m2].
+template <int Dim>
+double PressureEquation<Dim>::unevenness(std::size_t i) const {
+  const auto& vertex = grid_.vertices()[i];
+  double sum = 0;
+  for (int a = 0, step = 1; a < Dim; ++a, step *= 3) {
+    const double per_cell = 1 / geometry_.cell[a];
+    for (const int side : {-step, step}) {
+      const std::int32_t j = vertex.neighbour[static_cast<std::size_t>(Grid::centre + side)];
+      if (j < 0 || kind_[static_cast<std::size_t>(j)] == Kind::outside) continue;
+      const double slope = (fill_[static_cast<std::size_t>(j)] - fill_[i]) * per_cell;
+      sum += 0.5 * slope * slope;
+    }
+  }
+  return sum;
 }
 
 /// Where the fill passes one half between two vertices, linearly: the share of the line that is inside.
@@ -301,8 +376,9 @@ template <int Dim>
 void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside,
                                       double time) {
   const auto& vertex = grid_.vertices()[i];
-  double diagonal = row.implicit[Grid::centre] + row.storage;
-  double right = row.push - face_flux(vertex, time) + (row.old[Grid::centre] + row.storage) * old_[i];
+  const double storage = row.storage + row.steadied * unevenness(i);
+  double diagonal = row.implicit[Grid::centre] + storage;
+  double right = row.push - face_flux(vertex, time) + (row.old[Grid::centre] + storage) * old_[i];
   double expansion = lanes_[i][2];
   bool at_surface = false;
   for (std::size_t n = 0; n < Grid::stencil; ++n) {
@@ -332,6 +408,31 @@ void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const Exter
   right_side_[i] = right - (at_surface ? expansion : expansion / fill_[i]);
 }
 
+/// The same where all vertices around are inside and no face is near: nothing but the sums.
+template <int Dim>
+void PressureEquation<Dim>::write_inner_row(std::size_t i, const Row& row) {
+  const auto& vertex = grid_.vertices()[i];
+  const double storage = row.storage + row.steadied * unevenness(i);
+  double right = row.push + storage * old_[i];
+  for (std::size_t n = 0; n < Grid::stencil; ++n)
+    right += row.old[n] * old_[static_cast<std::size_t>(vertex.neighbour[n])];
+  // The couplings with the vertices behind have places that follow each other.
+  double* const values = values_.data() + vertex.slot[Grid::centre];
+  for (std::size_t n = Grid::centre; n < Grid::stencil; ++n) values[n - Grid::centre] = row.implicit[n];
+  values[0] += storage;
+  right_side_[i] = right - lanes_[i][2] / fill_[i];
+}
+
+template <int Dim>
+bool PressureEquation<Dim>::is_inner(const typename Grid::Vertex& vertex) const {
+  bool inner = vertex.share == 1;
+  for (const std::int32_t j : vertex.neighbour) {
+    inner = inner && j >= 0 && kind_[static_cast<std::size_t>(j)] == Kind::inside;
+    if (!inner) return false;
+  }
+  return true;
+}
+
 template <int Dim>
 void PressureEquation<Dim>::assemble(const ExternalPressure<Dim>& outside, const PressureStep& step) {
   const std::size_t count = grid_.vertices().size();
@@ -340,6 +441,10 @@ void PressureEquation<Dim>::assemble(const ExternalPressure<Dim>& outside, const
   parallel_shares(count, [&](std::size_t i) {
     const auto& vertex = grid_.vertices()[i];
     const Row own = row(vertex);
+    if (is_inner(vertex)) {
+      write_inner_row(i, own);
+      return;
+    }
     if (kind_[i] == Kind::inside) {
       write_row(i, own, outside, step.time);
       return;
@@ -380,16 +485,17 @@ void PressureEquation<Dim>::solve(Scene<Dim>& scene, const ExternalPressure<Dim>
     const auto timing = scene.clock.time(Stage::pressure_assembly);
     if (!covered(scene)) rebuild(scene);
     if (grid_.empty()) return;
-    sum_tiles();
+    sum_cells();
     set_cells(step);
     classify(step);
-    weigh_lines();
     assemble(outside, step);
   }
   const auto timing = scene.clock.time(Stage::pressure_solve);
+  // The pressure is guessed to change as it did in the last step.
   for (std::size_t v = 0; v < pressure_.size(); ++v)
-    pressure_[v] = kind_[v] == Kind::inside ? old_[v] : kind_[v] == Kind::given ? given_[v] : 0;
+    pressure_[v] = kind_[v] == Kind::inside ? old_[v] + change_[v] : kind_[v] == Kind::given ? given_[v] : 0;
   solve_system(step.dt);
+  for (std::size_t v = 0; v < pressure_.size(); ++v) change_[v] = kind_[v] == Kind::inside ? pressure_[v] - old_[v] : 0;
   extrapolate(outside, step.time);
 }
 
@@ -405,23 +511,21 @@ double line_weight(std::size_t n) {
 
 }  // namespace
 
+/// Of all lines that reach a vertex outside from vertices inside.
 template <int Dim>
-void PressureEquation<Dim>::weigh_lines() {
-  line_weights_.resize(kind_.size());
-  parallel_shares(kind_.size(), [&](std::size_t j) {
-    double weight = 0;
-    for (std::size_t n = 0; n < Grid::stencil && kind_[j] == Kind::outside; ++n) {
-      const std::int32_t i = grid_.vertices()[j].neighbour[n];
-      if (i >= 0 && kind_[static_cast<std::size_t>(i)] == Kind::inside) weight += line_weight<Dim>(n);
-    }
-    line_weights_[j] = weight;
-  });
+double PressureEquation<Dim>::line_weights(std::size_t j) const {
+  double weight = 0;
+  for (std::size_t n = 0; n < Grid::stencil; ++n) {
+    const std::int32_t i = grid_.vertices()[j].neighbour[n];
+    if (i >= 0 && kind_[static_cast<std::size_t>(i)] == Kind::inside) weight += line_weight<Dim>(n);
+  }
+  return weight;
 }
 
 /// Share of the pressure of vertex i in that of vertex j outside, which lies at place n of its stencil.
 template <int Dim>
 double PressureEquation<Dim>::continuation(std::size_t i, std::size_t j, std::size_t n) const {
-  return line_weight<Dim>(n) / line_weights_[j] * (1 - 1 / std::max(surface_share(i, j), least_continued_share));
+  return line_weight<Dim>(n) / line_weights(j) * (1 - 1 / std::max(surface_share(i, j), least_continued_share));
 }
 
 /// Vertices outside continue the pressure through the surface, the mean over the lines that reach them.
@@ -430,15 +534,16 @@ void PressureEquation<Dim>::extrapolate(const ExternalPressure<Dim>& outside, do
   parallel_shares(kind_.size(), [&](std::size_t j) {
     if (kind_[j] != Kind::outside) return;
     const auto& vertex = grid_.vertices()[j];
+    const double all_lines = line_weights(j);
     double sum = 0;
-    for (std::size_t n = 0; n < Grid::stencil; ++n) {
+    for (std::size_t n = 0; n < Grid::stencil && all_lines > 0; ++n) {
       if (vertex.neighbour[n] < 0) continue;
       const auto i = static_cast<std::size_t>(vertex.neighbour[n]);
       if (kind_[i] != Kind::inside) continue;
-      const double share = continuation(i, j, n), weight = line_weight<Dim>(n) / line_weights_[j];
+      const double share = continuation(i, j, n), weight = line_weight<Dim>(n) / all_lines;
       sum += share * pressure_[i] + (weight - share) * crossing(i, j, outside, time).pressure;
     }
-    pressure_[j] = line_weights_[j] > 0 ? sum : outside.of_ponds(geometry_.vertex(vertex.place), time);
+    pressure_[j] = all_lines > 0 ? sum : outside.of_ponds(geometry_.vertex(vertex.place), time);
   });
 }
 
@@ -446,7 +551,7 @@ template <int Dim>
 double PressureEquation<Dim>::solve_steady(Scene<Dim>& scene, const ExternalPressure<Dim>& outside) {
   if (!covered(scene)) rebuild(scene);
   if (grid_.empty()) return 0;
-  sum_tiles();
+  sum_cells();
   SteadySeepage found = solve_steady_seepage(grid_, sums_, geometry_, water_, outside, unit_weight_, scene.time);
   pressure_ = std::move(found.pressure);
   return found.discharge;

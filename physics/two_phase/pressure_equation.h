@@ -15,31 +15,13 @@
 #include "core/output/archive.h"
 #include "core/simulation/scene.h"
 #include "physics/loads/external_pressure.h"
+#include "physics/two_phase/cell_sums.h"
 #include "physics/two_phase/corner_integrals.h"
 #include "physics/two_phase/pressure_grid.h"
 #include "physics/two_phase/water.h"
 #include "solvers/lagged_cholesky.h"
 
 namespace sluice {
-
-/// Sums over the wet particles of a cell, each weighted with the volume.
-template <int Dim>
-struct CellSums {
-  double volume = 0;                   ///< [m3]
-  double inverse_density = 0;          ///< of 1 / rho, rho that of soil with water
-  double compliance = 0;               ///< of 1 / M, M the constrained modulus of the skeleton; 0 without one
-  double storage = 0;                  ///< of n / K_w
-  std::array<double, Dim> mobility{};  ///< of K = k / gamma_w and the like [m2/(Pa s)], along each axis
-  std::array<double, Dim> push{};      ///< of K rho_w (b - a) and the like: what drives water but the pressure [m/s]
-
-  void add(const CellSums& other) {
-    volume += other.volume;
-    inverse_density += other.inverse_density;
-    compliance += other.compliance;
-    storage += other.storage;
-    for (std::size_t a = 0; a < Dim; ++a) mobility[a] += other.mobility[a], push[a] += other.push[a];
-  }
-};
 
 /// What the pressure has to do in a step.
 struct PressureStep {
@@ -59,7 +41,7 @@ class PressureEquation {
   void prepare(const Scene<Dim>& scene, const std::vector<char>& wet);
   bool is_wet(std::size_t block) const { return wet_[block] != 0; }
 
-  CellSums<Dim>* cell_sums(std::size_t block) { return cell_sums_.data() + block * PressureGrid<Dim>::cell_tile; }
+  CellSums<Dim>* cell_sums(std::size_t block) { return cell_sums_.data() + block * cell_tile<Dim>; }
   /// Lanes {V, V p, V div v, …} of linear shape functions.
   Lane* vertex_tile(std::size_t block) { return vertex_tiles_.data() + block * PressureGrid<Dim>::vertex_tile; }
 
@@ -86,15 +68,23 @@ class PressureEquation {
 
   /// Coefficients of one cell.
   struct CellState {
-    std::array<double, Dim> implicit{};  ///< of the new pressure [m2/(Pa s)]
-    std::array<double, Dim> old{};       ///< of the old pressure
-    std::array<double, Dim> push{};
-    double storage = 0;  ///< per time [1/(Pa s)]
+    /// [m ^ n]: couplings of corners m and n through the new and the old pressure.
+    std::array<double, Grid::corners> implicit{}, old{};
+    std::array<double, Grid::corners> push{};  ///< of each corner [m3/s]
+    double storage = 0;                        ///< of each corner
+    double steadied = 0;  ///< of each corner, per unevenness: 3/2 kick / rho where there is a skeleton, eq. (47a)
+  };
+  /// What the coefficients of all cells have in common in a step.
+  struct StepConstants {
+    double kick, corner_volume_per_dt;
+    double steadied;                       ///< 3/2 of the volume of a corner, or 0 without stabilisation
+    std::array<double, Dim> stabilised{};  ///< h^2 / (4 dt), or 0 without stabilisation
+    std::array<double, Dim> softest{};     ///< (50 dt / h)^2
   };
   /// Couplings of a vertex with those around it.
   struct Row {
-    std::array<double, Grid::stencil> implicit{}, old{};
-    double storage = 0, push = 0;
+    std::array<double, Grid::stencil> implicit, old;
+    double storage = 0, push = 0, steadied = 0;
   };
   /// A line from a vertex inside to one outside, and where it crosses the surface.
   struct Crossing {
@@ -105,18 +95,23 @@ class PressureEquation {
   bool covered(const Scene<Dim>& scene) const;
   void rebuild(const Scene<Dim>& scene);
   void build(const std::vector<Index<Dim>>& wet_cells);
-  void sum_tiles();
+  void sum_cells();
+  Lane vertex_sum(std::size_t v) const;
   void set_cells(const PressureStep& step);
-  CellState cell_state(const CellSums<Dim>& sums, const PressureStep& step) const;
+  StepConstants constants(const PressureStep& step) const;
+  CellState cell_state(const CellSums<Dim>& sums, const StepConstants& step) const;
   void classify(const PressureStep& step);
   bool on_face(const Index<Dim>& place, int axis, int side) const;
   void assemble(const ExternalPressure<Dim>& outside, const PressureStep& step);
   Row row(const typename Grid::Vertex& vertex) const;
+  bool is_inner(const typename Grid::Vertex& vertex) const;
+  double unevenness(std::size_t i) const;
+  void write_inner_row(std::size_t i, const Row& row);
   void write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside, double time);
   double surface_share(std::size_t inside, std::size_t neighbour) const;
   Crossing crossing(std::size_t inside, std::size_t neighbour, const ExternalPressure<Dim>& outside, double time) const;
   double face_flux(const typename Grid::Vertex& vertex, double time) const;
-  void weigh_lines();
+  double line_weights(std::size_t j) const;
   double continuation(std::size_t i, std::size_t j, std::size_t n) const;
   void extrapolate(const ExternalPressure<Dim>& outside, double time);
   void solve_system(double dt);
@@ -141,8 +136,8 @@ class PressureEquation {
   std::vector<double> fill_;            // by vertex: share of its surroundings that is wet
   std::vector<Kind> kind_;              // by vertex
   std::vector<double> given_;           // by vertex [Pa]
-  std::vector<double> line_weights_;    // by vertex outside: of all lines from vertices inside
   std::vector<double> old_, pressure_;  // by vertex [Pa]
+  std::vector<double> change_;          // of the pressure in the last step, by vertex [Pa]
   std::vector<double> values_, right_side_;
   LaggedCholesky::Report report_;
 };

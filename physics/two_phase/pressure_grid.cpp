@@ -167,8 +167,13 @@ void PressureGrid<Dim>::locate(const Blocks<Dim>& blocks) {
       }
     }
   };
-  link(cell_numbers_, cell_tile_width, cell_tile, cells_.size(), tile_cells_, cell_entries_);
+  link(cell_numbers_, cell_tile_width<Dim>, cell_tile<Dim>, cells_.size(), tile_cells_, cell_entries_);
   link(vertex_numbers_, tile_width<Dim>(1), vertex_tile, vertices_.size(), tile_vertices_, vertex_entries_);
+  has_gaps_.resize(blocks.particle_blocks().size());
+  for (std::size_t b = 0; b < has_gaps_.size(); ++b) {
+    const std::int32_t* const cells = cells_of_tile(b);
+    has_gaps_[b] = std::find(cells, cells + cell_tile<Dim>, -1) != cells + cell_tile<Dim> ? 1 : 0;
+  }
 }
 
 template <int Dim>

@@ -10,6 +10,7 @@
 
 #include "core/grid/blocks.h"
 #include "core/grid/geometry.h"
+#include "core/transfer/cell_tile.h"
 #include "solvers/lagged_cholesky.h"
 
 namespace sluice {
@@ -20,8 +21,6 @@ class PressureGrid {
   static constexpr int corners = power(2, Dim);  ///< of a cell; bit a of a corner's number: upper along axis a
   static constexpr int stencil = power(3, Dim);  ///< a vertex and those around it, first axis fastest
   static constexpr int centre = stencil / 2;
-  static constexpr int cell_tile_width = block_width<Dim> + 2 * tile_margin;
-  static constexpr std::size_t cell_tile = power(cell_tile_width, Dim);
   static constexpr std::size_t vertex_tile = power(tile_width<Dim>(1), Dim);
 
   struct Vertex {
@@ -54,8 +53,11 @@ class PressureGrid {
   const Entries& cell_entries(std::size_t cell) const { return cell_entries_[cell]; }
   const Entries& vertex_entries(std::size_t vertex) const { return vertex_entries_[vertex]; }
   /// By block and place in its tile: the cell or vertex there; -1 if it is not in the set.
-  const std::int32_t* cells_of_tile(std::size_t block) const { return tile_cells_.data() + block * cell_tile; }
+  const std::int32_t* cells_of_tile(std::size_t block) const { return tile_cells_.data() + block * cell_tile<Dim>; }
   const std::int32_t* vertices_of_tile(std::size_t block) const { return tile_vertices_.data() + block * vertex_tile; }
+
+  /// Whether the tile of a block has cells beyond the set.
+  bool has_gaps(std::size_t block) const { return has_gaps_[block] != 0; }
 
   const SymmetricPattern& pattern() const { return pattern_; }
   std::vector<std::array<int, Dim>> places() const;
@@ -87,6 +89,7 @@ class PressureGrid {
   SymmetricPattern pattern_;
   std::vector<Entries> cell_entries_, vertex_entries_;
   std::vector<std::int32_t> tile_cells_, tile_vertices_;
+  std::vector<char> has_gaps_;  // by block
 };
 
 extern template class PressureGrid<2>;

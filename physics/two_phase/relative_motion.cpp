@@ -24,14 +24,6 @@ std::map<std::string, FaceCase> closed_faces(const Case& definition, const Water
   return faces;
 }
 
-/// Calls body(number) for the nodes of all blocks, in parallel over blocks.
-template <int Dim, class Body>
-void for_all_nodes(const Scene<Dim>& scene, const Body& body) {
-  parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) {
-    for (std::size_t n = 0; n < block_nodes<Dim>; ++n) body(b, n);
-  });
-}
-
 /// Components of the velocity of a node, and of its change.
 template <int Dim>
 struct Motion {
@@ -128,29 +120,35 @@ ScatterInput<Dim> RelativeMotion<Dim>::water_input(Scene<Dim>& scene, const Part
 }
 
 template <int Dim>
-void RelativeMotion<Dim>::scatter(Scene<Dim>& scene) {
-  const auto timing = scene.clock.time(Stage::scatter);
+void RelativeMotion<Dim>::begin_step(const Scene<Dim>& scene) {
   nodes_.resize(scene.blocks, scene.shape->degree());
   before_.resize(scene.blocks.node_blocks().size() * block_nodes<Dim>);
-  parallel_for(scene.blocks.particle_blocks().size(), [&](std::size_t b) {
+}
+
+template <int Dim>
+void RelativeMotion<Dim>::scatter(Scene<Dim>& scene, Items some) {
+  const auto timing = scene.clock.time(Stage::scatter);
+  parallel_for(some.within(scene.blocks.particle_blocks().size()), [&](std::size_t b) {
     scene.shape->scatter(ScatterWhat::momentum, water_input(scene, scene.blocks.particle_blocks()[b]), 0,
                          nodes_.momentum_tile(b), nullptr);
   });
 }
 
 template <int Dim>
-void RelativeMotion<Dim>::collect(Scene<Dim>& scene) {
+void RelativeMotion<Dim>::collect(Scene<Dim>& scene, Items some) {
   const auto timing = scene.clock.time(Stage::nodes);
-  parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) { nodes_.collect_momentum(scene.blocks, b); });
-  for_all_nodes<Dim>(scene, [&](std::size_t b, std::size_t n) {
-    const Lane water = nodes_.momentum(b)[n], mixture = scene.nodes.momentum(b)[n];
-    const double share = mixture[0] > 0 ? water[0] / mixture[0] : 0;
-    Lane& before = before_[b * block_nodes<Dim> + n];
-    before = water[0] > 0 ? water / water[0] : Lane{};
-    before[0] = share;
-    if (!projected_) return;
-    const Motion<Dim> motion(scene.nodes.motion(b) + n * motion_lanes<Dim>);
-    for (int a = 0; a < Dim; ++a) motion.velocity[a] += share * before[1 + a];
+  parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
+    nodes_.collect_momentum(scene.blocks, b);
+    for (std::size_t n = 0; n < block_nodes<Dim>; ++n) {
+      const Lane water = nodes_.momentum(b)[n], mixture = scene.nodes.momentum(b)[n];
+      const double share = mixture[0] > 0 ? water[0] / mixture[0] : 0;
+      Lane& before = before_[b * block_nodes<Dim> + n];
+      before = water[0] > 0 ? water / water[0] : Lane{};
+      before[0] = share;
+      if (!projected_) continue;
+      const Motion<Dim> motion(scene.nodes.motion(b) + n * motion_lanes<Dim>);
+      for (int a = 0; a < Dim; ++a) motion.velocity[a] += share * before[1 + a];
+    }
   });
 }
 
@@ -165,9 +163,10 @@ void RelativeMotion<Dim>::set_drag(Scene<Dim>& scene, const ParticleBlock<Dim>& 
   for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
     const Batch& batch = scene.blocks.batches()[k];
     const PoreSpace& space = pores_.spaces()[static_cast<std::size_t>(batch.material)];
+    const Mobility<Dim> mobilities = pores_.mobility(space);
     for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
       const bool porous = wet[p] != 0 && !space.liquid;
-      const double n = porosity[p], mobility = porous ? pores_.mobility(space, n)[0] : 1;
+      const double n = porosity[p], mobility = porous ? mobilities.along(0, mobilities.factor(n)) : 1;
       drag[p] = porous ? volume[p] * n * n / mobility : 0;
       for (int a = 0; a < Dim; ++a) {
         const double slope = columns.data(pores_.pressure_gradient(), a)[p];
@@ -203,72 +202,84 @@ void RelativeMotion<Dim>::scatter_drag(Scene<Dim>& scene, std::size_t b, const P
 }
 
 template <int Dim>
-void RelativeMotion<Dim>::advance(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double kick) {
-  for_each_block(scene, workspaces,
-                 [&](std::size_t b, const auto& block, Workspace<Dim>&) { scatter_drag(scene, b, block); });
-  const auto timing = scene.clock.time(Stage::nodes);
-  parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) {
-    nodes_.collect_momentum(scene.blocks, b);
-    if (!projected_) nodes_.collect_force(scene.blocks, b);
-    for (std::size_t n = 0; n < block_nodes<Dim>; ++n) {
-      const Lane before = before_[b * block_nodes<Dim> + n];
-      Lane drag = nodes_.momentum(b)[n];
-      const double share = before[0], water = share * scene.nodes.momentum(b)[n][0], reduced = water * (1 - share);
-      if (!projected_) {
-        drag += nodes_.force(b)[n];
-        for (int a = 0; a < Dim; ++a) drag[1 + a] += water * scene.gravity[a];
-      }
-      const Motion<Dim> solid(scene.nodes.motion(b) + n * motion_lanes<Dim>);
-      const Motion<Dim> relative(nodes_.motion(b) + n * motion_lanes<Dim>);
-      for (int a = 0; a < Dim; ++a) {
-        const double push = kick * drag[1 + a] - water * solid.change[a];  // the mixture's change, up to here
-        const double after = water > 0 ? (reduced * before[1 + a] + push) / (reduced + kick * drag[0]) : 0;
-        relative.velocity[a] = after;
-        relative.change[a] = after - before[1 + a];
-      }
-    }
-    faces_->fix(scene.blocks.node_blocks()[b], nodes_.motion(b));
-    for (std::size_t n = 0; n < block_nodes<Dim>; ++n) {
-      const double share = before_[b * block_nodes<Dim> + n][0];
-      const Motion<Dim> solid(scene.nodes.motion(b) + n * motion_lanes<Dim>);
-      const Motion<Dim> relative(nodes_.motion(b) + n * motion_lanes<Dim>);
-      for (int a = 0; a < Dim; ++a) {
-        solid.velocity[a] -= share * relative.change[a];
-        solid.change[a] -= share * relative.change[a];
-      }
-    }
-    scene.faces.fix(scene.blocks.node_blocks()[b], scene.nodes.motion(b));
+void RelativeMotion<Dim>::advance(Sweep<Dim>& sweep, Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces,
+                                  double kick) {
+  sweep.over_particles([this, &scene, &workspaces](Items some) {
+    const auto timing = scene.clock.time(Stage::scatter);
+    const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>&) { scatter_drag(scene, b, block); };
+    for_each_block(scene, workspaces, body, some);
+  });
+  sweep.over_nodes([this, &scene, kick](Items some) {
+    const auto timing = scene.clock.time(Stage::nodes);
+    parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) { advance_nodes(scene, b, kick); });
   });
 }
 
+/// Eqs. (52) and (53) at the nodes of a block.
 template <int Dim>
-void RelativeMotion<Dim>::compress(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt) {
+void RelativeMotion<Dim>::advance_nodes(Scene<Dim>& scene, std::size_t b, double kick) {
+  nodes_.collect_momentum(scene.blocks, b);
+  if (!projected_) nodes_.collect_force(scene.blocks, b);
+  for (std::size_t n = 0; n < block_nodes<Dim>; ++n) {
+    const Lane before = before_[b * block_nodes<Dim> + n];
+    Lane drag = nodes_.momentum(b)[n];
+    const double share = before[0], water = share * scene.nodes.momentum(b)[n][0], reduced = water * (1 - share);
+    if (!projected_) {
+      drag += nodes_.force(b)[n];
+      for (int a = 0; a < Dim; ++a) drag[1 + a] += water * scene.gravity[a];
+    }
+    const Motion<Dim> solid(scene.nodes.motion(b) + n * motion_lanes<Dim>);
+    const Motion<Dim> relative(nodes_.motion(b) + n * motion_lanes<Dim>);
+    for (int a = 0; a < Dim; ++a) {
+      const double push = kick * drag[1 + a] - water * solid.change[a];  // the mixture's change, up to here
+      const double after = water > 0 ? (reduced * before[1 + a] + push) / (reduced + kick * drag[0]) : 0;
+      relative.velocity[a] = after;
+      relative.change[a] = after - before[1 + a];
+    }
+  }
+  faces_->fix(scene.blocks.node_blocks()[b], nodes_.motion(b));
+  for (std::size_t n = 0; n < block_nodes<Dim>; ++n) {
+    const double share = before_[b * block_nodes<Dim> + n][0];
+    const Motion<Dim> solid(scene.nodes.motion(b) + n * motion_lanes<Dim>);
+    const Motion<Dim> relative(nodes_.motion(b) + n * motion_lanes<Dim>);
+    for (int a = 0; a < Dim; ++a) {
+      solid.velocity[a] -= share * relative.change[a];
+      solid.change[a] -= share * relative.change[a];
+    }
+  }
+  scene.faces.fix(scene.blocks.node_blocks()[b], scene.nodes.motion(b));
+}
+
+template <int Dim>
+void RelativeMotion<Dim>::compress(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt, Items some) {
   Columns& columns = scene.particles.columns;
   double* solid = columns.data(pores_.divergence());
   double* relative = columns.data(relative_divergence_);
   std::array<double*, Dim> unused;
   for (int a = 0; a < Dim; ++a) unused[a] = columns.data(pores_.acceleration(), a);
-  for_each_block(scene, workspaces, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
+  const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     nodes_.load_motion(scene.blocks, b, work.motion_tile.data());
     scene.shape->gather_divergence(scene.view(block), work.motion_tile.data(), relative, unused);
     scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
     scene.shape->gather_divergence(scene.view(block), work.motion_tile.data(), solid, unused);
     pores_.compress(scene, block, solid, relative, dt);
-  });
+  };
+  for_each_block(scene, workspaces, body, some);
 }
 
 template <int Dim>
-void RelativeMotion<Dim>::gather(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt) {
+void RelativeMotion<Dim>::gather(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt, Items some) {
   const auto timing = scene.clock.time(Stage::gather);
   Columns& columns = scene.particles.columns;
   MotionUpdate<Dim> update = motion_update(scene, dt, scratch_);
   for (int a = 0; a < Dim; ++a) update.velocity[a] = columns.data(velocity_, a);
   if (scene.transfer.affine)
     for (int c = 0; c < Dim * Dim; ++c) update.affine[c] = columns.data(affine_, c);
-  for_each_block(scene, workspaces, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
+  const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     nodes_.load_motion(scene.blocks, b, work.motion_tile.data());
     scene.shape->gather_motion(scene.view(block), work.motion_tile.data(), update);
-  });
+  };
+  for_each_block(scene, workspaces, body, some);
 }
 
 template class RelativeMotion<2>;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/simulation/stages.h"
+#include "core/simulation/sweep.h"
 #include "physics/two_phase/pore_water.h"
 
 namespace sluice {
@@ -24,22 +25,28 @@ class RelativeMotion {
   /// Kinetic energy that the water has because it does not move with the solid: m_w ((v + r)^2 - v^2) / 2 [J].
   double kinetic_energy(const Particles& particles) const;
 
+  /// To be called before the first stage of a step.
+  void begin_step(const Scene<Dim>& scene);
+
+  // Each of the following is a stage over `some` blocks, or adds its stages to a sweep: see Sweep.
+
   /// Particles to nodes: {m_w, m_w r}.
-  void scatter(Scene<Dim>& scene);
+  void scatter(Scene<Dim>& scene, Items some);
   /// Sums them. With a projection, the nodes' velocity becomes that of the mixture, V = v + (m_w / m) r, until they are
   /// corrected.
-  void collect(Scene<Dim>& scene);
+  void collect(Scene<Dim>& scene, Items some);
   /// The new relative velocity of the nodes from the new pressure; the nodes' velocity becomes that of the solid again.
-  void advance(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double kick);
+  void advance(Sweep<Dim>& sweep, Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double kick);
   /// `explicit`: the pressure of the particles from the divergences of the nodes' new velocities.
-  void compress(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt);
+  void compress(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt, Items some);
   /// Nodes to particles.
-  void gather(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt);
+  void gather(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt, Items some);
 
  private:
   ScatterInput<Dim> water_input(Scene<Dim>& scene, const ParticleBlock<Dim>& block);
   void set_drag(Scene<Dim>& scene, const ParticleBlock<Dim>& block);
   void scatter_drag(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block);
+  void advance_nodes(Scene<Dim>& scene, std::size_t b, double kick);
 
   const WaterCase& water_;
   PoreWater<Dim>& pores_;

@@ -132,7 +132,8 @@ class Seepage {
       push(m, flow);
       for (std::size_t n = 0; n < Grid::corners; ++n) {
         double coupling = 0;
-        for (std::size_t a = 0; a < Dim; ++a) coupling += weight * sums_[c].mobility[a] * integrals_.laplacian[a][m][n];
+        for (std::size_t a = 0; a < Dim; ++a)
+          coupling += weight * sums_[c].mobility[a] * integrals_.laplacian[a][m ^ n];
         couple(m, n, coupling);
       }
     }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/simulation/energy.h"
 
@@ -102,101 +101,163 @@ void TwoPhase<Dim>::step(Scene<Dim>& scene, double dt) {
   if (activate_blocks(scene) || !placed_) pressure_.prepare(scene, pores_.wet_blocks(scene));
   placed_ = true;
   stress_.begin_step(scene);
+  if (relative_.active()) relative_.begin_step(scene);
+  begin_sums(scene);
   if (water_.formulation == Formulation::explicit_)
     step_explicit(scene, dt);
   else
     step_projected(scene, dt);
+  end_sums(scene.kick(dt));
   stress_.end_step(scene);
 }
 
 template <int Dim>
 void TwoPhase<Dim>::step_projected(Scene<Dim>& scene, double dt) {
   const double kick = scene.kick(dt);
-  predict(scene, kick);
-  project(scene, dt, kick);
-  correct(scene, kick);
-  gather(scene, dt);
+  Sweep<Dim> to_grid(scene.blocks);
+  predict(to_grid, scene, kick);
+  collect(to_grid, scene, kick);
+  to_grid.run();
+
+  pressure_.solve(scene, outside_, {dt, kick, scene.time + dt, water_.stabilisation});
+
+  Sweep<Dim> to_particles(scene.blocks);
+  correct(to_particles, scene, kick);
+  gather(to_particles, scene, dt);
+  to_particles.run();
 }
 
 /// Nothing is solved for: the pressure follows from how the water was compressed, and limits the step.
 template <int Dim>
 void TwoPhase<Dim>::step_explicit(Scene<Dim>& scene, double dt) {
-  predict(scene, scene.kick(dt));
-  relative_.advance(scene, stress_.workspaces(), scene.kick(dt));
-  relative_.compress(scene, stress_.workspaces(), dt);
-  gather(scene, dt);
+  Sweep<Dim> sweep(scene.blocks);
+  predict(sweep, scene, scene.kick(dt));
+  relative_.advance(sweep, scene, stress_.workspaces(), scene.kick(dt));
+  sweep.over_particles([&](Items some) { relative_.compress(scene, stress_.workspaces(), dt, some); });
+  gather(sweep, scene, dt);
+  sweep.run();
 }
 
 /// Velocities of the nodes under gravity, effective stress and the old pressure, eq. (41).
 template <int Dim>
-void TwoPhase<Dim>::predict(Scene<Dim>& scene, double kick) {
-  const auto forces = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
-    pores_.scatter_forces(scene, b, block, work.motion_tile.data(), outside_);
-  };
-  scatter(scene, ScatterWhat::momentum);
+void TwoPhase<Dim>::predict(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
   const bool stress_first = stress_.timing() == StressTiming::usf;
-  if (stress_first) {
-    velocity_from_momentum(scene);
-    stress_.update(scene, scene.previous_dt, forces);
-  } else {
+  const auto forces = [this, &scene](std::size_t b, const auto& block, Workspace<Dim>& work, ScatterWhat what) {
+    pores_.scatter_forces(scene, b, block, work.motion_tile.data(), outside_, what);
+    start_load_work(scene, b, block);
+  };
+  sweep.over_particles([this, &scene, forces, stress_first](Items some) {
     const auto timing = scene.clock.time(Stage::scatter);
-    for_each_block(scene, stress_.workspaces(), forces);
+    const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+      if (!stress_first) {
+        forces(b, block, work, ScatterWhat::momentum_and_force);
+        return;
+      }
+      scene.shape->scatter(ScatterWhat::momentum, scene.scatter_input(block), 0, scene.nodes.momentum_tile(b), nullptr);
+      if (outside_.any()) pores_.take_outside_pressure(scene, block, work.motion_tile.data(), outside_);
+      start_load_work(scene, b, block);
+    };
+    for_each_block(scene, stress_.workspaces(), body, some);
+  });
+  if (relative_.active()) sweep.over_particles([&](Items some) { relative_.scatter(scene, some); });
+  if (stress_first) {
+    sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, some); });
+    stress_.update(sweep, scene, scene.previous_dt, [=, this, &scene](std::size_t b, const auto& block, auto& work) {
+      add_load_work(scene, b, block);
+      forces(b, block, work, ScatterWhat::force);
+    });
   }
-  advance_nodes(scene, kick, !stress_first, true);
-  if (!relative_.active()) return;
-  relative_.scatter(scene);
-  relative_.collect(scene);
+  sweep.over_nodes([this, &scene, kick, stress_first](Items some) {
+    advance_nodes(scene, kick, !stress_first, true, some);
+    if (relative_.active()) relative_.collect(scene, some);
+  });
 }
 
-/// The pressure that balances the volumes of soil and water at the end of the step, eq. (46).
+/// What the balance of volume needs of the particles, eq. (45).
 template <int Dim>
-void TwoPhase<Dim>::project(Scene<Dim>& scene, double dt, double kick) {
-  {
+void TwoPhase<Dim>::collect(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
+  sweep.over_particles([this, &scene, kick](Items some) {
     const auto timing = scene.clock.time(Stage::pressure_assembly);
     const auto relative = relative_.velocity(scene.particles);
-    power_.assign(scene.blocks.particle_blocks().size(), 0);
-    for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
-      if (pressure_.is_wet(b)) power_[b] = pores_.collect(scene, b, block, work, kick, relative, pressure_);
-    });
-    dissipated_ += kick * std::accumulate(power_.begin(), power_.end(), 0.0);
-  }
-  pressure_.solve(scene, outside_, {dt, kick, scene.time + dt, water_.stabilisation});
+    const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+      if (pressure_.is_wet(b)) sums_[b].dissipation = pores_.collect(scene, b, block, work, kick, relative, pressure_);
+    };
+    for_each_block(scene, stress_.workspaces(), body, some);
+  });
 }
 
 /// The nodes take up the new pressure, eq. (49).
 template <int Dim>
-void TwoPhase<Dim>::correct(Scene<Dim>& scene, double kick) {
+void TwoPhase<Dim>::correct(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
   const bool friction = scene.faces.any_friction();
   if (friction) wall_.resize(scene.blocks, scene.shape->degree());
-  {
+  sweep.over_particles([this, &scene, friction](Items some) {
     const auto timing = scene.clock.time(Stage::scatter);
-    for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+    const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
       pores_.correct(scene, b, block, work, pressure_);
       if (friction) pores_.scatter_pressure(scene, b, block, outside_, wall_);
-    });
-  }
-  correct_nodes(scene, kick, friction ? &wall_ : nullptr);
-  if (relative_.active()) relative_.advance(scene, stress_.workspaces(), kick);
+    };
+    for_each_block(scene, stress_.workspaces(), body, some);
+  });
+  sweep.over_nodes(
+      [this, &scene, kick, friction](Items some) { correct_nodes(scene, kick, friction ? &wall_ : nullptr, some); });
+  if (relative_.active()) relative_.advance(sweep, scene, stress_.workspaces(), kick);
 }
 
 /// Particles move and strain with the nodes; their pores follow.
 template <int Dim>
-void TwoPhase<Dim>::gather(Scene<Dim>& scene, double dt) {
-  if (relative_.active()) relative_.gather(scene, stress_.workspaces(), dt);
+void TwoPhase<Dim>::gather(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
+  if (relative_.active())
+    sweep.over_particles([this, &scene, dt](Items some) { relative_.gather(scene, stress_.workspaces(), dt, some); });
   switch (stress_.timing()) {
     case StressTiming::usf:
-      stress_.gather_motion(scene, dt);
+      stress_.gather_motion(sweep, scene, dt);
       break;
     case StressTiming::usl:
-      stress_.gather_motion_and_update(scene, dt);
+      stress_.gather_motion_and_update(sweep, scene, dt);
       break;
     case StressTiming::musl:
-      stress_.gather_motion_and_map_again(scene, dt);
+      stress_.gather_motion_and_map_again(sweep, scene, dt);
       break;
   }
-  const auto timing = scene.clock.time(Stage::gather);
-  parallel_for(scene.blocks.particle_blocks().size(),
-               [&](std::size_t b) { pores_.follow_volume(scene, scene.blocks.particle_blocks()[b]); });
+  sweep.over_particles([this, &scene](Items some) {
+    const auto timing = scene.clock.time(Stage::gather);
+    const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>&) {
+      add_load_work(scene, b, block);
+      pores_.follow_volume(scene, block);
+    };
+    for_each_block(scene, stress_.workspaces(), body, some);
+  });
+}
+
+// ---- energy: written by block, summed in block order ----
+
+template <int Dim>
+void TwoPhase<Dim>::begin_sums(const Scene<Dim>& scene) {
+  sums_.assign(scene.blocks.particle_blocks().size(), {});
+}
+
+template <int Dim>
+void TwoPhase<Dim>::end_sums(double kick) {
+  for (const BlockSums& block : sums_) {
+    dissipated_ += kick * block.dissipation;
+    load_work_ += block.load_work;
+  }
+}
+
+/// Counts the work of the outside pressure that the particles of a block have taken, from here on.
+template <int Dim>
+void TwoPhase<Dim>::start_load_work(const Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block) {
+  if (outside_.any()) sums_[b].outside = pores_.outside_sums(scene, block);
+}
+
+/// Adds the work done since then.
+template <int Dim>
+void TwoPhase<Dim>::add_load_work(const Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block) {
+  if (!outside_.any()) return;
+  const auto now = pores_.outside_sums(scene, block);
+  const auto& before = sums_[b].outside;
+  sums_[b].load_work += now.force_position - before.force_position - (now.pressure_volume - before.pressure_volume);
 }
 
 // ---- limits ----
@@ -230,7 +291,7 @@ std::vector<TimeStepLimit> TwoPhase<Dim>::hard_limits(const Scene<Dim>& scene) c
 
 template <int Dim>
 void TwoPhase<Dim>::store(Archive& archive) const {
-  archive.reals["two_phase"] = {stress_.fastest_wave(), dissipated_, discharge_};
+  archive.reals["two_phase"] = {stress_.fastest_wave(), dissipated_, discharge_, load_work_};
   pressure_.store(archive);
 }
 
@@ -240,17 +301,21 @@ void TwoPhase<Dim>::restore(const Archive& archive) {
   stress_.restore_fastest_wave(own.at(0));
   dissipated_ = own.at(1);
   discharge_ = own.at(2);
+  load_work_ = own.at(3);
   pressure_.restore(archive);
   placed_ = false;
 }
 
 template <int Dim>
 std::vector<std::pair<std::string, double>> TwoPhase<Dim>::energies(const Scene<Dim>& scene) const {
-  return {{"kinetic", kinetic_energy(scene) + relative_.kinetic_energy(scene.particles)},
-          {"elastic", stress_.materials().stored_energy(scene.particles)},
-          {"potential", potential_energy(scene)},
-          {"water_compression", pores_.compression_energy(scene.particles)},
-          {"seepage_dissipation", dissipated_}};
+  std::vector<std::pair<std::string, double>> all = {
+      {"kinetic", kinetic_energy(scene) + relative_.kinetic_energy(scene.particles)},
+      {"elastic", stress_.materials().stored_energy(scene.particles)},
+      {"potential", potential_energy(scene)},
+      {"water_compression", pores_.compression_energy(scene.particles)},
+      {"seepage_dissipation", dissipated_}};
+  if (outside_.any()) all.emplace_back("load_work", load_work_);
+  return all;
 }
 
 template <int Dim>

@@ -146,7 +146,8 @@ const Schema<WaterCase>& schema() {
                     "for the whole.",
                     1.0)
           .boolean("stabilisation", &W::stabilisation,
-                   "Against oscillations of the undrained pressure in short steps; acts only where they are too short.",
+                   "Against oscillations of the undrained pressure in short steps, and where particles lie unevenly; "
+                   "acts only there.",
                    true)
           .custom({.name = "table",
                    .type = field_type::points,

@@ -2,7 +2,7 @@
 ///
 ///   sluice_performance [--smoke] [--sizes 1 0.25 0.125] [--only linear]
 ///   sluice_performance --solver      the sparse solvers instead (solver.h)
-///   sluice_performance --two-phase   steps with pore water instead (two_phase.h)
+///   sluice_performance --two-phase [--only step]   steps with pore water instead (two_phase.h)
 ///   sluice_performance --materials   the constitutive models alone (materials.h)
 ///
 /// `--only` leaves out the kernels whose names do not contain the word; the plain one stays.
@@ -200,7 +200,7 @@ int main(int argc, char** argv) {
       cells.push_back(std::stod(word));
   }
   if (solver || smoke) measure_solvers(smoke);
-  if (water || smoke) measure_two_phase(smoke);
+  if (water || smoke) measure_two_phase(smoke, kernels == "step");
   if (materials || smoke) measure_materials(smoke);
   if (solver || water || materials) return 0;
   if (cells.empty()) cells = smoke ? std::vector<double>{1} : std::vector<double>{1, 0.25, 0.125};

@@ -3,4 +3,5 @@
 
 /// Prints what a step with pore water costs beside one without, where its time goes, how that scales, and how the
 /// projection compares with the explicit step to the same end. `smoke`: the smallest sizes only, a few steps.
-void measure_two_phase(bool smoke);
+/// `step_alone`: only a step of the smallest size, and its stages.
+void measure_two_phase(bool smoke, bool step_alone);

@@ -63,6 +63,28 @@ class Interruption : public testing::Test {
   std::mt19937 random_{std::random_device{}()};
 };
 
+/// The same for sand full of water under a growing load: what the pressure solver carries from step to step, the old
+/// factor among it, must be there again.
+class InterruptionOfTwoPhase : public Interruption, public testing::WithParamInterface<std::string> {
+ protected:
+  void SetUp() override {
+    std::string text = with(column, "cell: 0.25 m", "cell: 0.125 m");
+    text = with(text, "total_stress\n",
+                "two_phase\nwater: {formulation: " + GetParam() + ", bulk_modulus: 50 MPa}\n" +
+                    "surface_loads: [{pressure: [[0 s, 0 kPa], [0.5 s, 5 kPa]]}]\n");
+    text = with(text, "cohesion: 100 Pa", "cohesion: 100 Pa\n    water: {porosity: 0.4, permeability: 5 mm/s}");
+    scratch_.write("case.yaml", with(text, "every: 0.1 s", "every: 0.07 s, checkpoint_every: 10 ms"));
+  }
+
+  /// Steps of the uninterrupted run that renewed the factor, and that iterated with an old one.
+  std::pair<int, int> factors_new_and_old() const {
+    const auto history = table(scratch_ / "whole/history.csv");
+    const auto& renewed = history.at("pressure_factorized");
+    const auto fresh = std::ranges::count_if(renewed, [](const std::string& v) { return std::stod(v) != 0; });
+    return {static_cast<int>(fresh), static_cast<int>(renewed.size()) - static_cast<int>(fresh)};
+  }
+};
+
 std::string halved(const fs::path& file) {
   std::string text = text_of(file);
   text.resize(text.size() / 2);
@@ -124,6 +146,33 @@ TEST_F(Interruption, by_a_kill_keeps_what_was_removed_and_what_is_measured_from_
     ASSERT_EQ(signal_after(share * last_step_, SIGKILL, more).code, -SIGKILL);
   }
   ASSERT_EQ(run_sluice(run("out", {"--resume"}), scratch_.path()).code, exit_code::done);
+  expect_whole("out");
+}
+
+INSTANTIATE_TEST_SUITE_P(formulations, InterruptionOfTwoPhase, testing::Values("u-p", "v-w-p"),
+                         [](const auto& test) { return std::string(test.param == "u-p" ? "u_p" : "v_w_p"); });
+
+TEST_P(InterruptionOfTwoPhase, by_a_kill_at_any_moment_is_not_seen_in_the_results) {
+  run_whole();
+  const auto [renewed, kept] = factors_new_and_old();
+  EXPECT_GT(renewed, 5);
+  EXPECT_GT(kept, 100);
+  for (const double share : {0.15, 0.3, 0.5, 0.7}) {
+    SCOPED_TRACE(share);
+    const auto more = fs::exists(scratch_ / "out") ? std::vector<std::string>{"--resume"} : std::vector<std::string>{};
+    ASSERT_EQ(signal_after(share * last_step_, SIGKILL, more).code, -SIGKILL);
+  }
+  const Ending resumed = run_sluice(run("out", {"--resume"}), scratch_.path());
+  ASSERT_EQ(resumed.code, exit_code::done) << resumed.err;
+  expect_whole("out");
+}
+
+TEST_P(InterruptionOfTwoPhase, by_ctrl_c_is_not_seen_in_the_results) {
+  run_whole();
+  ASSERT_EQ(signal_after(last_step_ / 3, SIGINT).code, exit_code::interrupted);
+  auto words = run("out", {"--resume"});
+  *(std::find(words.begin(), words.end(), "--threads") + 1) = "1";
+  ASSERT_EQ(run_sluice(words, scratch_.path()).code, exit_code::done);
   expect_whole("out");
 }
 

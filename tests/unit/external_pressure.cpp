@@ -140,7 +140,7 @@ struct Block {
     LaneArray tile;
     tile.resize(scene.nodes.tile_size());
     for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b)
-      pores.scatter_forces(scene, b, scene.blocks.particle_blocks()[b], tile.data(), outside);
+      pores.scatter_forces(scene, b, scene.blocks.particle_blocks()[b], tile.data(), outside, ScatterWhat::force);
     for (std::size_t b = 0; b < scene.blocks.node_blocks().size(); ++b) {
       scene.nodes.collect_momentum(scene.blocks, b);
       scene.nodes.collect_force(scene.blocks, b);

@@ -212,7 +212,7 @@ TEST(PressureGrid, FindsTheEntriesOfAllTiles) {
     const auto blocks = blocks_of<Dim>(everywhere, g);
     grid.locate(blocks);
     expect_entries<Dim>(
-        blocks, grid.cell_tile, grid.cell_tile_width, grid.cells().size(),
+        blocks, cell_tile<Dim>, cell_tile_width<Dim>, grid.cells().size(),
         [&](std::size_t i) { return grid.cells()[i].place; }, [&](std::size_t i) { return grid.cell_entries(i); },
         [&](std::size_t b) { return grid.cells_of_tile(b); });
     expect_entries<Dim>(
