@@ -77,7 +77,8 @@ TEST(LowerSanFernando, runs_out_and_comes_to_rest) {
   expect_within(observations.at("runout"), 36, 50, "runout [m]");
   expect_within(observations.at("crest_loss"), 11, 15, "crest_loss [m]");
   double peak = 0, last = 0;
-  for (const auto& cell : table(scratch / "out/history.csv").at("kinetic_energy_J")) {
+  const auto history = table(scratch / "out/history.csv");
+  for (const auto& cell : history.at("kinetic_energy_J")) {
     last = std::strtod(cell.c_str(), nullptr);
     peak = std::max(peak, last);
   }
