@@ -56,9 +56,10 @@ RelativeMotion<Dim>::RelativeMotion(const Case& definition, const WaterCase& wat
         section.find("water")->find("permeability")->place,
         fmt::format("material '{}': only `formulation: u-p` takes permeabilities that differ between axes", name));
   }
-  if (active_)
-    faces_ = std::make_unique<Faces<Dim>>(closed_faces(definition, water), grid_of<Dim>(definition.grid),
-                                          shape_registry<Dim>().find(definition.scheme.shape, {})()->degree());
+  if (!active_) return;
+  const auto shape = shape_registry<Dim>().find(definition.scheme.shape, {})();
+  faces_ = std::make_unique<Faces<Dim>>(closed_faces(definition, water), grid_of<Dim>(definition.grid), shape->reach(),
+                                        shape->outside());
 }
 
 template <int Dim>
@@ -130,7 +131,7 @@ ScatterInput<Dim> RelativeMotion<Dim>::water_input(Scene<Dim>& scene, const Part
 template <int Dim>
 void RelativeMotion<Dim>::scatter(Scene<Dim>& scene) {
   const auto timing = scene.clock.time(Stage::scatter);
-  nodes_.resize(scene.blocks, scene.shape->degree());
+  nodes_.resize(scene.blocks, scene.shape->reach());
   before_.resize(scene.blocks.node_blocks().size() * block_nodes<Dim>);
   parallel_for(scene.blocks.particle_blocks().size(), [&](std::size_t b) {
     scene.shape->scatter(ScatterWhat::momentum, water_input(scene, scene.blocks.particle_blocks()[b]), 0,
@@ -141,7 +142,12 @@ void RelativeMotion<Dim>::scatter(Scene<Dim>& scene) {
 template <int Dim>
 void RelativeMotion<Dim>::collect(Scene<Dim>& scene) {
   const auto timing = scene.clock.time(Stage::nodes);
-  parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) { nodes_.collect_momentum(scene.blocks, b); });
+  const bool filtered = VelocityFilter<Dim>::wanted(scene);
+  if (filtered) filter_.resize(scene);
+  parallel_for(scene.blocks.node_blocks().size(), [&](std::size_t b) {
+    nodes_.collect_momentum(scene.blocks, b);
+    if (filtered) filter_.take(scene, b, nodes_.momentum(b), *faces_);
+  });
   for_all_nodes<Dim>(scene, [&](std::size_t b, std::size_t n) {
     const Lane water = nodes_.momentum(b)[n], mixture = scene.nodes.momentum(b)[n];
     const double share = mixture[0] > 0 ? water[0] / mixture[0] : 0;
@@ -259,6 +265,11 @@ void RelativeMotion<Dim>::compress(Scene<Dim>& scene, std::vector<Workspace<Dim>
 
 template <int Dim>
 void RelativeMotion<Dim>::gather(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt) {
+  if (VelocityFilter<Dim>::wanted(scene)) {
+    Sweep<Dim> sweep(scene.blocks);
+    filter_.add_maps(sweep, scene, water_mass_, *faces_, nodes_);
+    sweep.run();
+  }
   const auto timing = scene.clock.time(Stage::gather);
   Columns& columns = scene.particles.columns;
   MotionUpdate<Dim> update = motion_update(scene, dt, scratch_);

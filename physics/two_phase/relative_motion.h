@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/simulation/stages.h"
+#include "core/simulation/velocity_filter.h"
 #include "physics/two_phase/pore_water.h"
 
 namespace sluice {
@@ -46,6 +46,7 @@ class RelativeMotion {
   bool active_, projected_;
   std::unique_ptr<Faces<Dim>> faces_;  // what they are to the water
   NodeFields<Dim> nodes_;
+  VelocityFilter<Dim> filter_;
   std::vector<Lane> before_;  // {r} of the nodes at the beginning of the step, and the share m_w / m
   ColumnId velocity_, affine_;
   ColumnId water_mass_, drag_, drive_, scratch_, partial_stress_, relative_divergence_;

@@ -167,7 +167,7 @@ void TwoPhase<Dim>::project(Scene<Dim>& scene, double dt, double kick) {
 template <int Dim>
 void TwoPhase<Dim>::correct(Scene<Dim>& scene, double kick) {
   const bool friction = scene.faces.any_friction();
-  if (friction) wall_.resize(scene.blocks, scene.shape->degree());
+  if (friction) wall_.resize(scene.blocks, scene.shape->reach());
   {
     const auto timing = scene.clock.time(Stage::scatter);
     for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
