@@ -49,6 +49,7 @@ struct SchemeCase {
   std::string shape = "quadratic_bspline";
   std::string transfer = "apic";
   double flip_fraction = 1;  ///< share of FLIP in the FLIP/PIC blend; 1 is pure FLIP, 0 is pure PIC
+  int xpic_order = 2;        ///< of XPIC: mappings to the nodes in a step; 1 is PIC
   std::string stress_update = "usl";
   std::string strain = "jaumann";         ///< how stress follows large strain: jaumann or hencky
   bool f_bar = false;                     ///< volumetric strain increments averaged over cells

@@ -1,7 +1,6 @@
 #include "core/simulation/sweep.h"
 
 #include <algorithm>
-#include <cassert>
 
 namespace sluice {
 
@@ -9,14 +8,14 @@ namespace sluice {
 template <int Dim>
 std::size_t Sweep<Dim>::ready(std::size_t stage, std::size_t done_before) const {
   const bool from_particles = stages_[stage - 1].particles, to_particles = stages_[stage].particles;
-  assert(from_particles || to_particles);
   const std::size_t nodes = from_particles ? blocks_.nodes_ready(done_before) : done_before;
   return to_particles ? blocks_.particles_ready(nodes) : nodes;
 }
 
 template <int Dim>
 void Sweep<Dim>::run(std::size_t blocks_per_thread) const {
-  const std::size_t count = blocks_.particle_blocks().size();
+  if (stages_.empty()) return;
+  const std::size_t count = stages_[0].particles ? blocks_.particle_blocks().size() : blocks_.node_blocks().size();
   const std::size_t stride = blocks_per_thread * static_cast<std::size_t>(thread_count());
   std::vector<std::size_t> done(stages_.size(), 0);
   while (done[0] < count) {
