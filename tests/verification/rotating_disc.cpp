@@ -89,7 +89,7 @@ std::vector<Scheme> affine_schemes() {
 class RotatingDisc : public ::testing::TestWithParam<Scheme> {};
 
 // Gates: 1e-6 of the angular momentum with APIC (measured: 1e-12, round-off). With TPIC 1e-4 (measured: 4e-5): the
-// gradient is the moment of (20) but for third derivatives of the velocity, which a disc in rotation has from its
+// gradient is the moment of (20) where the velocity is linear, and a disc in rotation departs from that by its
 // vibrations and at its ragged rim only. And a tenth of rho Omega^2 R^2 for the deviatoric
 // stress over three turns (measured: 0.08; the rim is ragged at this cell size, and no stress is seen to grow from turn
 // to turn). Strain is taken at the beginning of the step (USL) or at its end (USF), not in its middle: a turning disc
