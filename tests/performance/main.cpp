@@ -1,6 +1,7 @@
 /// Measures particle-steps per second on the dam, against the plain kernel of plain_kernel.h, in one run.
 ///
 ///   sluice_performance [--smoke] [--sizes 1 0.25 0.125] [--only linear]
+///   sluice_performance --mappings    every shape function and transfer instead, on the dam itself
 ///   sluice_performance --solver      the sparse solvers instead (solver.h)
 ///   sluice_performance --two-phase [--only step]   steps with pore water instead (two_phase.h)
 ///   sluice_performance --materials   the constitutive models alone (materials.h)
@@ -22,6 +23,8 @@
 #include "core/case/case.h"
 #include "core/parallel/parallel.h"
 #include "core/simulation/simulation.h"
+#include "core/transfer/shape_kernels.h"
+#include "core/transfer/transfer_scheme.h"
 #include "materials.h"
 #include "plain_kernel.h"
 #include "solver.h"
@@ -178,18 +181,44 @@ double compare(double cell, const std::string& kernels, int turns, double second
   return median(all[1].rates);
 }
 
+/// Every shape function with FLIP, and every transfer with quadratic B-splines, on one thread. Stresses
+/// are updated first: linear functions do not survive the slide otherwise.
+void compare_mappings(bool smoke) {
+  std::vector<std::pair<std::string, std::string>> schemes;
+  for (const auto& shape : shape_registry<2>().names()) schemes.emplace_back(shape, "flip");
+  for (const auto& transfer : transfer_registry().names())
+    if (transfer != "flip") schemes.emplace_back("quadratic_bspline", transfer);
+  std::stable_sort(schemes.begin(), schemes.end(),
+                   [](const auto& a, const auto& b) { return (a.first == "linear") > (b.first == "linear"); });
+  const double far = 1000;
+  std::vector<std::unique_ptr<Simulation>> simulations;
+  std::vector<Contestant> all;
+  set_thread_count(1);
+  for (const auto& [shape, transfer] : schemes) {
+    simulations.push_back(Simulation::create(dam(1, shape, transfer, "usf")));
+    for (int i = 0; i < 100; ++i) simulations.back()->advance(far);
+    all.push_back({shape + ", " + transfer, 1, [s = simulations.back().get(), far] { s->advance(far); }});
+  }
+  take_turns(all, simulations[0]->particles().size(), smoke ? 1 : 7, smoke ? 0.02 : 0.15);
+  fmt::print("Mappings: {} particles, one thread\n", simulations[0]->particles().size());
+  fmt::print("  {:<28}{:>16}{:>24}\n", "shape, transfer", "10^6 p-steps/s", "cost, times linear");
+  for (const auto& c : all) fmt::print("  {:<28}{:>16.1f}{:>24.2f}\n", c.name, median(c.rates), ratio(all[0], c));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::vector<double> cells;
   std::string kernels;
-  bool smoke = false, solver = false, water = false, materials = false;
+  bool smoke = false, solver = false, water = false, materials = false, mappings = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--smoke")
       smoke = true;
     else if (word == "--solver")
       solver = true;
+    else if (word == "--mappings")
+      mappings = true;
     else if (word == "--two-phase")
       water = true;
     else if (word == "--materials")
@@ -202,7 +231,8 @@ int main(int argc, char** argv) {
   if (solver || smoke) measure_solvers(smoke);
   if (water || smoke) measure_two_phase(smoke, kernels == "step");
   if (materials || smoke) measure_materials(smoke);
-  if (solver || water || materials) return 0;
+  if (mappings || smoke) compare_mappings(smoke);
+  if (solver || water || materials || mappings) return 0;
   if (cells.empty()) cells = smoke ? std::vector<double>{1} : std::vector<double>{1, 0.25, 0.125};
   double in_cache = 0;
   for (const double cell : cells) {

@@ -48,6 +48,18 @@ std::vector<std::array<int, 3>> cells(const Particles& particles) {
   return all;
 }
 
+/// Cells from the rim of a body that notice in one step that nodes there see half of a field only: the farthest node
+/// that does, and from there to its particles; so many for each mapping. An affine field shows them the other half.
+double touched_by_rim(const Scheme& scheme) {
+  if (scheme.affine()) return 2;
+  const double once = scheme.linear()                       ? 1
+                      : scheme.shape == "ugimp"             ? 1.25
+                      : scheme.shape == "quadratic_bspline" ? 2
+                                                            : 3;
+  const int mappings = 1 + (scheme.stress_update == "musl" ? 1 : 0) + (scheme.transfer == "xpic" ? 1 : 0);
+  return std::max(2.0, once * mappings);
+}
+
 class FBar : public ::testing::TestWithParam<Scheme> {};
 
 // A uniform volumetric strain is its own mean: the same stress as without F-bar, to round-off.
@@ -69,7 +81,8 @@ TEST_P(FBar, UniformVolumetricStrainIsUnchanged) {
       const auto x = by_id(simulation->particles(), "position", 0), y = by_id(simulation->particles(), "position", 1),
                  z = by_id(simulation->particles(), "position", dimension - 1);
       for (std::size_t p = 0; p < x.size(); ++p) {
-        const bool inside = std::max({std::abs(x[p]), std::abs(y[p]), std::abs(z[p])}) < (dimension == 2 ? 4 : 1);
+        const bool inside = std::max({std::abs(x[p]), std::abs(y[p]), std::abs(z[p])}) <
+                            (dimension == 2 ? 6 : 3) - touched_by_rim(GetParam());
         if (inside) {
           ASSERT_NEAR(found.back().mean[p], -1e6 / 1.2 * 0.1 * dimension * 1e-3, 1e-8)
               << dimension << "-D, f_bar " << f_bar;

@@ -27,7 +27,7 @@ struct Scheme {
   std::string more;  ///< further keys of the section, for example "time_step: 1 ms"
 
   bool linear() const { return shape == "linear"; }
-  bool affine() const { return transfer == "apic"; }
+  bool affine() const { return transfer == "apic" || transfer == "tpic"; }
   std::string text() const {
     return fmt::format("{{shape: {}, transfer: {}, stress_update: {}, flip_fraction: {}{}{}}}", shape, transfer,
                        stress_update, flip_fraction, more.empty() ? "" : ", ", more);
@@ -45,8 +45,8 @@ inline void PrintTo(const Scheme& scheme, std::ostream* out) { *out << scheme.na
 /// Every shape function with every transfer and every stress timing.
 inline std::vector<Scheme> all_schemes() {
   std::vector<Scheme> schemes;
-  for (const char* shape : {"linear", "quadratic_bspline"})
-    for (const char* transfer : {"flip", "apic"})
+  for (const char* shape : {"linear", "ugimp", "quadratic_bspline", "cubic_bspline"})
+    for (const char* transfer : {"flip", "apic", "tpic", "xpic"})
       for (const char* stress_update : {"usf", "usl", "musl"})
         schemes.push_back({shape, transfer, stress_update, 1, {}});
   return schemes;
@@ -57,7 +57,7 @@ inline std::string scheme_name(const ::testing::TestParamInfo<Scheme>& info) { r
 /// Every transfer with every stress timing, for tests that choose the shape functions themselves.
 inline std::vector<Scheme> transfers_and_timings() {
   auto schemes = all_schemes();
-  std::erase_if(schemes, [](const Scheme& s) { return s.linear(); });
+  std::erase_if(schemes, [](const Scheme& s) { return s.shape != "quadratic_bspline"; });
   return schemes;
 }
 

@@ -61,7 +61,8 @@ class SymmetricCollapse : public ::testing::TestWithParam<Scheme> {
   void TearDown() override { set_thread_count(1); }
 };
 
-// After 0.8 s and 100 steps the column has spread by half of its width. Tolerance: 1e-12 cells, a hundred times the
+// After 0.8 s and 100 steps the column has spread by half of its width (with XPIC(2), which damps, by a quarter).
+// Tolerance: 1e-12 cells, a hundred times the
 // round-off that is found (1e-14); the flow is not chaotic over so short a time.
 TEST_P(SymmetricCollapse, StaysSymmetric) {
   set_thread_count(2);
@@ -71,7 +72,7 @@ TEST_P(SymmetricCollapse, StaysSymmetric) {
     const auto x = by_id(simulation->particles(), "position"), x0 = by_id(simulation->particles(), "initial_position");
     double spread = 0;
     for (std::size_t p = 0; p < x.size(); ++p) spread = std::max(spread, std::abs(x[p] - x0[p]));
-    EXPECT_GT(spread, 0.8) << dimension << "-D";
+    EXPECT_GT(spread, GetParam().transfer == "xpic" ? 0.25 : 0.75) << dimension << "-D";
     for (int axis = 0; axis < dimension - 1; ++axis)
       EXPECT_LT(asymmetry(simulation->particles(), axis), 1e-12) << dimension << "-D, axis " << axis;
   }

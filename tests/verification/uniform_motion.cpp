@@ -19,8 +19,11 @@ constexpr int steps = 40, reach = 3 * steps;
 /// step 16.
 constexpr double length = 345, middle = length / 2;
 
+/// With cubic B-splines the stress acts along the channel only: two particles do not integrate their slopes in the cell
+/// at a wall (docs/theory.md, section 2), and a stress on the walls would not be in equilibrium.
 SceneText channel(int dimension, const Scheme& scheme) {
   const bool flat = dimension == 2;
+  const std::string across = scheme.shape == "cubic_bspline" ? "0" : "-100 Pa";
   return {
       .grid = flat ? "{min: [-2 m, 0 m], max: [350 m, 2 m], cell: 1 m}"
                    : "{min: [-2 m, 0 m, 0 m], max: [350 m, 1 m, 1 m], cell: 1 m}",
@@ -30,8 +33,8 @@ SceneText channel(int dimension, const Scheme& scheme) {
                : "  - {material: soil, box: {min: [0 m, 0 m, 0 m], max: [345 m, 1 m, 1 m]}, velocity: [1 m/s, 0, 0]}",
       .boundaries =
           flat ? "{bottom: roller, top: roller}" : "{bottom: roller, top: roller, front: roller, back: roller}",
-      .initial_stress = flat ? "{method: uniform, stress: [-100 Pa, -100 Pa, -100 Pa, 0]}"
-                             : "{method: uniform, stress: [-100 Pa, -100 Pa, -100 Pa, 0, 0, 0]}",
+      .initial_stress =
+          fmt::format("{{method: uniform, stress: [-100 Pa, {0}, {0}, 0{1}]}}", across, flat ? "" : ", 0, 0"),
       .scheme = scheme.with("time_step: 50 ms")};
 }
 
@@ -47,15 +50,18 @@ Deviation deviation_after_translation(int dimension, const Scheme& scheme, doubl
   set_column(particles, "position", 0, [&](const auto& x) { return middle + (x[0] - middle) * (1 + stretched); });
   for (double& v : particles.columns.values(particles.volume)) v *= 1 + stretched;
   for (double& m : particles.columns.values(particles.mass)) m *= 1 + stretched;
+  const int components = dimension == 2 ? 4 : 6;
+  std::vector<std::vector<double>> before;
+  for (int c = 0; c < components; ++c) before.push_back(by_id(particles, "stress", c));
   take_steps(*simulation, steps);
 
   Deviation largest;
-  const int components = dimension == 2 ? 4 : 6;
   for (int c = 0; c < components; ++c) {
     const auto s = by_id(particles, "stress", c);
+    const auto& at_start = before[static_cast<std::size_t>(c)];
     for (std::size_t p = 0; p < s.size(); ++p)
       if (x0[p] > reach && x0[p] < length - reach)
-        largest.stress = std::max(largest.stress, std::abs(s[p] - (c < 3 ? stress : 0)) / std::abs(stress));
+        largest.stress = std::max(largest.stress, std::abs(s[p] - at_start[p]) / std::abs(stress));
   }
   for (int a = 0; a < dimension; ++a) {
     const auto v = by_id(particles, "velocity", a);
@@ -66,25 +72,32 @@ Deviation deviation_after_translation(int dimension, const Scheme& scheme, doubl
   return largest;
 }
 
+constexpr const char* smooth_shapes[] = {"ugimp", "quadratic_bspline", "cubic_bspline"};
+
 class UniformMotion : public ::testing::TestWithParam<Scheme> {};
 
 // A lattice that fits the cells has no quadrature error at all: the gate of 1e-10 is round-off over 40 steps.
-TEST_P(UniformMotion, BSplineKeepsStressAndVelocity) {
+TEST_P(UniformMotion, SmoothFunctionsKeepStressAndVelocity) {
   Scheme scheme = GetParam();
-  scheme.shape = "quadratic_bspline";
-  for (const int dimension : {2, 3}) {
-    const Deviation d = deviation_after_translation(dimension, scheme, 0);
-    EXPECT_LT(d.stress, 1e-10) << dimension << "-D";
-    EXPECT_LT(d.velocity, 1e-10) << dimension << "-D";
+  for (const char* shape : smooth_shapes) {
+    scheme.shape = shape;
+    for (const int dimension : {2, 3}) {
+      const Deviation d = deviation_after_translation(dimension, scheme, 0);
+      EXPECT_LT(d.stress, 1e-10) << shape << ' ' << dimension << "-D";
+      EXPECT_LT(d.velocity, 1e-10) << shape << ' ' << dimension << "-D";
+    }
   }
 }
 
 // One that is e off meets the kinks of the B-spline's slope a share e too early or late: the error is of the order of e
 // times that of linear functions, below 10 e kicks here, and goes to zero with e.
-TEST_P(UniformMotion, BSplineErrorVanishesWithTheMisfit) {
+TEST_P(UniformMotion, ErrorOfSmoothFunctionsVanishesWithTheMisfit) {
   Scheme scheme = GetParam();
-  scheme.shape = "quadratic_bspline";
-  for (const double e : {1e-4, 1e-5}) EXPECT_LT(deviation_after_translation(2, scheme, e).velocity, 10 * e * kick);
+  for (const char* shape : smooth_shapes) {
+    scheme.shape = shape;
+    for (const double e : {1e-4, 1e-5})
+      EXPECT_LT(deviation_after_translation(2, scheme, e).velocity, 10 * e * kick) << shape;
+  }
 }
 
 // The negative control. A node between a cell of four points and one of two is accelerated by sigma V_p / h for each

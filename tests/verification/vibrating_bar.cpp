@@ -4,6 +4,7 @@
 /// rho).
 #include <numbers>
 
+#include "core/transfer/shape_kernels.h"
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {
@@ -15,6 +16,7 @@ struct Vibration {
   double phase = 0;      ///< error of the time of the 20th zero of the velocity, over a period
   double amplitude = 0;  ///< velocity amplitude of the mode in the tenth period over v0
   double energy = 0;     ///< mean total energy of the tenth period over the initial one
+  int steps = 0;         ///< that the first nine periods took
 };
 
 /// Ten periods of mode n on cells of size h.
@@ -41,14 +43,15 @@ Vibration vibrate(const Scheme& scheme, int n, double h) {
   Vibration result;
   double before = v0, time_before = 0, energies = 0;
   int zeros = 0, samples = 0;
-  while (simulation->time() < 10 * period) {
-    const double dt = simulation->advance(10 * period).dt, time = simulation->time() - dt / 2;
+  while (simulation->time() < 10.5 * period) {
+    const double dt = simulation->advance(10.5 * period).dt, time = simulation->time() - dt / 2;
     const auto v = by_id(particles, "velocity");
     double now = 0;
     for (std::size_t p = 0; p < mode.size(); ++p) now += mass[p] * v[p] * mode[p] / modal_mass;
     if ((now < 0) != (before < 0) && ++zeros == 20)
       result.phase = (time_before + (time - time_before) * before / (before - now)) / period - 9.75;
-    if (simulation->time() > 9 * period) {
+    if (simulation->time() <= 9 * period) ++result.steps;
+    if (simulation->time() > 9 * period && simulation->time() < 10 * period) {
       result.amplitude = std::max(result.amplitude, std::abs(now) / v0);
       energies += energy(*simulation, "kinetic") + energy(*simulation, "elastic");
       ++samples;
@@ -56,50 +59,106 @@ Vibration vibrate(const Scheme& scheme, int n, double h) {
     before = now;
     time_before = time;
   }
-  EXPECT_EQ(zeros, 20);
+  EXPECT_GE(zeros, 20);
   result.energy = energies / samples / initial_energy;
   return result;
 }
 
-/// Lumped masses slow waves of wave number k down by a share of (k h)^2, largest for FLIP with quadratic B-splines,
-/// (k h)^2 / 4 (linear: / 8): so many periods are lost in ten. One tenth on top is room for the error of time
-/// integration.
-double largest_phase_error(int n, double h) {
-  const double kh = (2 * n - 1) * pi / (2 * length) * h;
-  return 10 * kh * kh / 4 * 1.1;
+double wave_number(int n) { return (2 * n - 1) * pi / (2 * length); }
+
+/// Lumped masses slow waves of wave number k down by a share of (k h)^2: FLIP with functions of degree p by
+/// (p + 1) / 12 of it, 1/4 for quadratic and 1/3 for cubic B-splines, for particles without number. So many periods are
+/// lost in ten. One tenth on top is room for the error of time integration; cubic functions also notice the free end,
+/// where they see less than half of the bar: another half.
+double largest_phase_error(const Scheme& scheme, int n, double h) {
+  const double kh = wave_number(n) * h;
+  return 10 * kh * kh * (scheme.shape == "cubic_bspline" ? 1.5 / 3 : 1.1 / 4);
+}
+
+/// What a wave keeps on its way from the nodes to the particles, two in a cell, and back: the mean over them of |b|^2
+/// with b = sum_i N_i exp(i k (x_i - x_p)).
+double kept_by_round_trip(const std::string& name, double kh) {
+  const auto shape = shape_registry<2>().find(name, {})();
+  const GridGeometry<2> grid{{0, 0}, {20, 20}, {1, 1}, {20, 20}};
+  double kept = 0;
+  for (const double x : {9.25, 9.75}) {
+    std::array<double, domain_capacity<2>> domain{};
+    shape->fill_domain(grid, 0.5, domain);
+    const Stencil<2> s = shape->stencil(grid, {x, 9.5}, domain);
+    double cosine = 0, sine = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(s.count); ++i) {
+      const double angle = kh * (shape->node_position(grid, 0, s.node[i][0]) - x);
+      cosine += s.value[i] * std::cos(angle), sine += s.value[i] * std::sin(angle);
+    }
+    kept += (cosine * cosine + sine * sine) / 2;
+  }
+  return kept;
+}
+
+/// The share of its amplitude that a vibration keeps in so many steps under PIC (m = 1) and XPIC(m): velocities keep
+/// 1 - (1 - s)^m in each step, and half of the energy is in them.
+double kept_by_xpic(const std::string& shape, double kh, int m, int steps) {
+  return std::pow(1 - std::pow(1 - kept_by_round_trip(shape, kh), m), 0.5 * steps);
 }
 
 class VibratingBar : public ::testing::TestWithParam<Scheme> {};
 
-// 160 points a wave. Energy: the field's gate for a good scheme is 1 % in ten periods; the worst here is FLIP with USL,
-// which damps: 0.2 %.
+// 160 points a wave. Energy: the field's gate for a good scheme is 1 % in ten periods; FLIP with USL, which damps,
+// loses 0.2 %. Cubic functions with APIC or TPIC lose up to 2 %, and XPIC(2) what it must and with wide functions 3 %
+// of the amplitude more: at the ends, where the mode is steepest, its mappings flatten what an affine field would keep.
 TEST_P(VibratingBar, FirstMode) {
-  const Vibration v = vibrate(GetParam(), 1, 1);
-  EXPECT_LT(std::abs(v.phase), largest_phase_error(1, 1));
-  EXPECT_NEAR(v.amplitude, 1, 2e-3);
-  EXPECT_NEAR(v.energy, 1, 4e-3);
+  const Scheme& scheme = GetParam();
+  const Vibration v = vibrate(scheme, 1, 1);
+  EXPECT_LT(std::abs(v.phase), largest_phase_error(scheme, 1, 1));
+  const double kept = scheme.transfer == "xpic" ? kept_by_xpic(scheme.shape, wave_number(1), 2, v.steps) : 1;
+  const bool bspline = scheme.shape.ends_with("bspline");
+  const double wide = scheme.transfer == "xpic" && bspline ? 18 : scheme.shape == "cubic_bspline" ? 5 : 1;
+  EXPECT_NEAR(v.amplitude, kept, 2e-3 * wide);
+  EXPECT_NEAR(v.energy, kept * kept, 4e-3 * wide);
 }
 
-// 42 points a wave. Schemes that are known to damp, FLIP with USL (Bardenhagen 2002) and APIC with wide shape
-// functions, lose up to a fifth of the energy; the others keep it to 2 %.
+// 42 points a wave. Schemes that are known to damp, FLIP with USL (Bardenhagen 2002), APIC and TPIC with wide shape
+// functions, lose up to a fifth of the energy; the others keep it to 2 %. XPIC has a test of its own.
 TEST_P(VibratingBar, TenthMode) {
-  const Vibration v = vibrate(GetParam(), 10, 0.25);
-  const bool damps = GetParam().affine() ? !GetParam().linear() : GetParam().stress_update == "usl";
-  EXPECT_LT(std::abs(v.phase), largest_phase_error(10, 0.25));
-  EXPECT_NEAR(v.amplitude, 1, damps ? 0.1 : 0.01);
-  EXPECT_GT(v.energy, damps ? 0.8 : 0.98);
+  const Scheme& scheme = GetParam();
+  const Vibration v = vibrate(scheme, 10, 0.25);
+  EXPECT_LT(std::abs(v.phase), largest_phase_error(scheme, 10, 0.25));
   EXPECT_LT(v.energy, 1.02);
+  if (scheme.transfer == "xpic") return;
+  const bool damps = scheme.affine() ? !scheme.linear() : scheme.stress_update == "usl";
+  const double wide = scheme.shape == "cubic_bspline" ? 1.3 : 1;
+  EXPECT_NEAR(v.amplitude, 1, damps ? 0.1 * wide : 0.01);
+  EXPECT_GT(v.energy, damps ? 1 - 0.2 * wide : 0.98);
 }
 
-// Second order in h: half the cell, a quarter of the phase error, to a tenth.
+// Second order in h: half the cell, a quarter of the phase error, to a tenth; to a fifth with uGIMP, whose particles
+// are as long as half a cell and see its edges.
 TEST_P(VibratingBar, PhaseErrorIsOfSecondOrder) {
   const double coarse = vibrate(GetParam(), 10, 0.25).phase, fine = vibrate(GetParam(), 10, 0.125).phase;
-  EXPECT_NEAR(coarse / fine, 4, 0.4);
+  EXPECT_NEAR(coarse / fine, 4, GetParam().shape == "ugimp" ? 0.8 : 0.4);
+}
+
+// The damping of PIC and XPIC(m) on the tenth mode, against what theory predicts with no free number: to a tenth of its
+// logarithm, and to 2 % of the amplitude. FLIP with USF, which does not damp, is the measure for what else happens.
+// Higher orders damp less; FLIP is where they end.
+TEST(VibratingBarWithXpic, DecaysAsPredicted) {
+  for (const char* shape : {"linear", "ugimp", "quadratic_bspline", "cubic_bspline"}) {
+    const double kh = wave_number(10) * 0.25, free = vibrate({shape, "flip", "usf", 1, {}}, 10, 0.25).amplitude;
+    double before = 0;
+    for (const int m : {1, 2, 3, 5}) {
+      const Vibration v = vibrate({shape, "xpic", "usf", 1, fmt::format("xpic_order: {}", m)}, 10, 0.25);
+      const double expected = std::log(kept_by_xpic(shape, kh, m, v.steps)), found = std::log(v.amplitude / free);
+      EXPECT_NEAR(found, expected, 0.02 + 0.1 * std::abs(expected)) << shape << ", order " << m;
+      EXPECT_GT(v.amplitude, before) << shape << ", order " << m;
+      before = v.amplitude;
+    }
+    EXPECT_NEAR(before, free, 0.01) << shape;
+  }
 }
 
 // The negative control: PIC damps mode 1 by about (k h)^2 / 6 a step (linear) and more with wider functions.
 TEST(VibratingBarWithPic, LosesMostOfTheEnergy) {
-  for (const char* shape : {"linear", "quadratic_bspline"})
+  for (const char* shape : {"linear", "ugimp", "quadratic_bspline", "cubic_bspline"})
     for (const char* stress_update : {"usf", "usl", "musl"})
       EXPECT_LT(vibrate({shape, "flip", stress_update, 0, {}}, 1, 1).energy, 0.3) << shape << ' ' << stress_update;
 }
