@@ -16,7 +16,7 @@ namespace sluice::element {
 namespace {
 
 /// Of the update that a rate is taken from: its strain, and its time over that of the stage at most.
-constexpr double tiny_strain = 1e-8, tiny_share = 1e-6;
+constexpr double tiny_strain = 2e-9, tiny_share = 1e-6;
 
 struct Rates {
   Tensor strain{}, stress{};
@@ -45,7 +45,7 @@ class RateEquations {
   bool evaluate(const PointState& point, Rates& rates) {
     const double size = std::max(given_, warm_.lpNorm<Eigen::Infinity>());
     const double dt = std::min(tiny_strain / size, tiny_share * stage_.duration);
-    // Within a tiny strain of first yield the two updates lie on different sides of it, and the rates are no rates; a
+    // Within a tiny strain of first yield the updates lie on different sides of it, and the rates are no rates; a
     // shorter or a longer update then sees one side.
     for (const auto& [start, share] : {std::pair{1.0, 1.0}, {0.0, 1.0}, {0.0, 1e-2}, {1.0, 1e2}}) {
       Vector x = start * warm_;
@@ -99,20 +99,23 @@ class RateEquations {
     return solved;
   }
 
-  /// Two updates over `dt` one after the other; the second minus the first is the rate. The first has set right what
-  /// is not on the yield surface, and what comes with the rate at once.
+  /// Three updates over `dt` one after the other; the third minus the second is the rate. The first sets right what is
+  /// not on the yield surface, and what comes with the rate at once; the second what a law finds a step later, such as
+  /// a strength that follows the plastic strain of the step before.
   Rates from_update(const PointState& point, const Tensor& strain_rate, double dt) const {
     Tensor strain;
     for (std::size_t k = 0; k < components; ++k) strain[k] = strain_rate[k] * dt;
     PointState first = point;
-    update_point(material_, strain, dt, first);
+    for (int n = 0; n < 2; ++n) {
+      update_point(material_, strain, dt, first);
+      first.time += dt;
+    }
     PointState second = first;
-    second.time += dt;
     update_point(material_, strain, dt, second);
     Rates rates;
     for (std::size_t k = 0; k < components; ++k) {
       rates.stress[k] = (second.stress[k] - first.stress[k]) / dt;
-      rates.now[k] = 2 * first.stress[k] - second.stress[k];
+      rates.now[k] = 3 * first.stress[k] - 2 * second.stress[k];
     }
     for (std::size_t k = 0; k < point.state.size(); ++k) rates.state.push_back((second.state[k] - first.state[k]) / dt);
     return rates;
