@@ -42,7 +42,7 @@ void optional_integer(Schema<T>& schema, const std::string& key, std::optional<i
   schema.custom(
       {.name = key,
        .type = field_type::integer,
-       .range = "from 1 to 1000000",
+       .range = from_to(1, 1e6).text(unit::none),
        .default_text = absent,
        .sentence = sentence},
       [=](T& object, const Node& node, Problems& problems) {
@@ -279,8 +279,12 @@ std::vector<Stage> read_stages(const Node& list, const Fineness& fineness, Probl
 std::vector<Stage> read_path(const Node& path, const Tensor& initial, const Fineness& fineness, Problems& problems) {
   if (!path) return {};  // reported
   if (path.kind == Node::Kind::list) return read_stages(path, fineness, problems);
-  const PathKeys keys = path_schema().read(path, {}, problems);
-  if (keys.type.empty()) return {};  // reported
+  Problems own;
+  const PathKeys keys = path_schema().read(path, {}, own);
+  if (!own.empty()) {
+    path_schema().read(path, {}, problems);
+    return {};  // what is missing may be what could not be read
+  }
   if (const std::string wrong = contradiction(keys); !wrong.empty()) {
     problems.add(path.place, "path: " + wrong);
     return {};

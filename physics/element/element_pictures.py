@@ -51,6 +51,11 @@ def abscissa(table, component):
     return -strain, rf"$-\varepsilon_{{{component}}}$ [%]"
 
 
+def above(axis):
+    """A legend over the axes, where no curve is."""
+    axis.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), ncol=2, borderaxespad=0.2)
+
+
 def draw_driven(axis, tables, component):
     for table, style, label in tables:
         stress = table[f"stress_{component}_Pa"] / 1000
@@ -58,7 +63,7 @@ def draw_driven(axis, tables, component):
         axis.plot(abscissa(table, component)[0], sign * stress, label=label, **style)
     name = rf"\sigma_{{{component}}}"
     axis.set(xlabel=abscissa(tables[0][0], component)[1], ylabel=f"${name}$ [kPa]" if sign > 0 else f"$-{name}$ [kPa]")
-    axis.legend(frameon=False, fontsize=8)
+    above(axis)
 
 
 def draw_invariants(axis, tables, _):
@@ -69,8 +74,18 @@ def draw_invariants(axis, tables, _):
 
 
 def draw_volume(axis, tables, component):
-    """Pore pressure where the volume is constant, else the volumetric strain."""
-    undrained = np.ptp(tables[0][0]["pore_pressure_Pa"]) > 0
+    """Pore pressure if there is any; compression over the logarithm of p where it was driven; else volumetric strain."""
+    first = tables[0][0]
+    undrained = np.ptp(first["pore_pressure_Pa"]) > 0
+    normal = [np.ptp(first[f"strain_{c}"]) for c in COMPONENTS[:3]]
+    isotropic = min(normal) > 0.99 * max(normal)
+    confined = np.allclose(first["volumetric_strain"], first["strain_zz"]) and max(normal) > 0
+    if (isotropic or confined) and first["pressure_Pa"].min() > 0:
+        name = "void_ratio" if "void_ratio" in first else "volumetric_strain"
+        for table, style, label in tables:
+            axis.semilogx(table["pressure_Pa"] / 1000, table[name], label=label, **style)
+        axis.set(xlabel="$p$ [kPa]", ylabel=name.replace("_", " "))
+        return
     for table, style, label in tables:
         values = table["pore_pressure_Pa"] / 1000 if undrained else 100 * table["volumetric_strain"]
         axis.plot(abscissa(table, component)[0], values, label=label, **style)
@@ -79,7 +94,7 @@ def draw_volume(axis, tables, component):
 
 
 def draw_state(axis, tables, component):
-    """All state variables, each over the largest value of the path, or what the void ratio does if there are none."""
+    """All state variables, each over the largest value of the path; q over time if there are none."""
     names = [name for name in tables[0][0] if name not in COLUMNS and not name.startswith(("strain_", "stress_"))]
     if not names:
         axis.plot(tables[0][0]["time_s"], tables[0][0]["mises_stress_Pa"] / 1000, **PLAIN)
@@ -92,7 +107,7 @@ def draw_state(axis, tables, component):
             axis.plot(abscissa(table, component)[0], table[name] / largest, label=text,
                       **{**style, **({"color": colour} if style is PLAIN else {})})
     axis.set(xlabel=abscissa(tables[0][0], component)[1], ylabel="state over its largest value")
-    axis.legend(frameon=False, fontsize=7)
+    above(axis)
 
 
 def main():
