@@ -1,13 +1,10 @@
-#!/ usr / bin / env python3
-""
-    "Pictures of a Sluice run: fields at a few times, curves over time, and an animation.
+#!/usr/bin/env python3
+"""Pictures of a Sluice run: fields at a few times, curves over time, and an animation.
 
-    python3 pictures
-        .py RESULTS_DIR[--fields equivalent_plastic_strain material displacement][--times 0 10 20 50][--animation]
+    python3 pictures.py RESULTS_DIR [--fields equivalent_plastic_strain material displacement]
+                                    [--times 0 10 20 50] [--animation]
 
-    Reads RESULTS_DIR /
-    results.h5(of a finished run, or of one under way),
-    history.csv and observations.csv; writes
+Reads RESULTS_DIR/results.h5 (of a finished run, or of one under way), history.csv and observations.csv; writes
 RESULTS_DIR/pictures/FIELD.png (one panel a time), history.png, observations.png and FIELD.gif.
 Needs python3-h5py, python3-numpy, python3-matplotlib and python3-pil. Made to be adapted: the layout of results.h5 is
 read in `Results`, a field is turned into an image in `rasterise`, and each figure is drawn by one function.
@@ -110,7 +107,7 @@ class View:
         low, high = results.high[axes].copy(), results.low[axes].copy()
         for frame in evenly_spaced(results, 12):
             if results.count[frame]:
-#A single particle that was thrown far does not make the picture small.
+                # A single particle that was thrown far does not make the picture small.
                 near, far = np.percentile(results.positions(frame)[:, axes], [0.02, 99.98], axis=0)
                 low, high = np.minimum(low, near), np.maximum(high, far)
         margin = 0.03 * (high - low) + 2 * results.cell[axes]
@@ -191,10 +188,10 @@ class Scale:
         self.map = plt.get_cmap(COLOUR_MAP)
         values = np.concatenate([results.values(name, frame) for frame in frames])
         values = values[np.isfinite(values)]
-#A few extreme particles do not decide the scale; where most of a field is zero, a thin zone of large values neither.
+        # A few extreme particles do not decide the scale; where most of a field is zero, a thin zone of large values neither.
         low, high = np.percentile(values, [0.5, 99.5]) if values.size else (0, 1)
         if name == "pore_pressure":
-#The whole range, from zero unless there is suction worth a colour.
+            # The whole range, from zero unless there is suction worth a colour.
             low, high = (0 if low > -0.02 * high else low), np.percentile(values, 99.9)
         elif 0 <= low < 0.2 * high:
             low, high = 0, np.percentile(values, 97)
@@ -301,7 +298,7 @@ def draw_scatter(results, name, frames, path, most=60000):
     height = row * len(frames) + 0.6
     figure = plt.figure(figsize=(width, height))
     for number, frame in enumerate(frames):
-#Axes in perspective are square : each is as wide as the page, and overlaps its neighbours where it is empty.
+        # Axes in perspective are square: each is as wide as the page, and overlaps its neighbours where it is empty.
         middle = (height - 0.6 - (number + 0.5) * row) / height
         axes = figure.add_axes([0, middle - 0.5 * width / height, 0.95, width / height], projection="3d")
         axes.patch.set_alpha(0)

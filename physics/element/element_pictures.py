@@ -16,6 +16,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import LogFormatter
 
 COMPONENTS = ["xx", "yy", "zz", "xy", "yz", "xz"]
 COLUMNS = ("time_s", "stage", "pressure_Pa", "mises_stress_Pa", "pore_pressure_Pa", "volumetric_strain", "void_ratio")
@@ -51,11 +52,6 @@ def abscissa(table, component):
     return -strain, rf"$-\varepsilon_{{{component}}}$ [%]"
 
 
-def above(axis):
-    """A legend over the axes, where no curve is."""
-    axis.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), ncol=2, borderaxespad=0.2)
-
-
 def draw_driven(axis, tables, component):
     for table, style, label in tables:
         stress = table[f"stress_{component}_Pa"] / 1000
@@ -63,7 +59,7 @@ def draw_driven(axis, tables, component):
         axis.plot(abscissa(table, component)[0], sign * stress, label=label, **style)
     name = rf"\sigma_{{{component}}}"
     axis.set(xlabel=abscissa(tables[0][0], component)[1], ylabel=f"${name}$ [kPa]" if sign > 0 else f"$-{name}$ [kPa]")
-    above(axis)
+    axis.legend(fontsize=7, framealpha=0.8, edgecolor="none")
 
 
 def draw_invariants(axis, tables, _):
@@ -84,6 +80,8 @@ def draw_volume(axis, tables, component):
         name = "void_ratio" if "void_ratio" in first else "volumetric_strain"
         for table, style, label in tables:
             axis.semilogx(table["pressure_Pa"] / 1000, table[name], label=label, **style)
+        for kind in (axis.xaxis.set_major_formatter, axis.xaxis.set_minor_formatter):
+            kind(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.5)))
         axis.set(xlabel="$p$ [kPa]", ylabel=name.replace("_", " "))
         return
     for table, style, label in tables:
@@ -107,7 +105,7 @@ def draw_state(axis, tables, component):
             axis.plot(abscissa(table, component)[0], table[name] / largest, label=text,
                       **{**style, **({"color": colour} if style is PLAIN else {})})
     axis.set(xlabel=abscissa(tables[0][0], component)[1], ylabel="state over its largest value")
-    above(axis)
+    axis.legend(fontsize=7, framealpha=0.8, edgecolor="none")
 
 
 def main():
