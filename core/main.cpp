@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <new>
 #include <thread>
 
 #include "core/case/case.h"
+#include "core/case/case_tree.h"
 #include "core/case/reference.h"
 #include "core/case/registry.h"
+#include "core/command.h"
 #include "core/output/pictures.h"
 #include "core/parallel/parallel.h"
 #include "core/simulation/guard.h"
@@ -33,17 +36,6 @@ struct Arguments {
   int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   bool resume = false, force = false, quiet = false, animation = false, json = false;
 };
-
-std::vector<Override> overrides_of(const Arguments& arguments) {
-  std::vector<Override> overrides;
-  for (const auto& text : arguments.sets) {
-    const auto equals = text.find('=');
-    if (equals == std::string::npos || equals == 0)
-      throw CaseError(fmt::format("--set {}: expected KEY=VALUE, for example --set end_time=\"10 s\"", text));
-    overrides.push_back({text.substr(0, equals), text.substr(equals + 1)});
-  }
-  return overrides;
-}
 
 void use_threads(int asked) {
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -70,7 +62,7 @@ int plot(const Arguments& arguments) {
 
 int run(const Arguments& arguments) {
   use_threads(arguments.threads);
-  const Case definition = load_case(arguments.case_file, overrides_of(arguments));
+  const Case definition = load_case(arguments.case_file, overrides_of(arguments.sets));
   RunOptions options;
   options.folder = arguments.output.empty() ? fs::path("results") / fs::path(arguments.case_file).stem()
                                             : fs::path(arguments.output);
@@ -82,7 +74,7 @@ int run(const Arguments& arguments) {
 
 int check(const Arguments& arguments) {
   use_threads(arguments.threads);
-  print_prediction(load_case(arguments.case_file, overrides_of(arguments)));
+  print_prediction(load_case(arguments.case_file, overrides_of(arguments.sets)));
   return exit_code::done;
 }
 
@@ -162,6 +154,11 @@ int dispatch(int argc, char** argv) {
   list_command->add_option("kind", arguments.list_kind, "What to list; without it, what can be listed");
   auto* schema_command = app.add_subcommand("schema", "Print the reference of the case file (Markdown)");
   schema_command->add_flag("--json", arguments.json, "Print a JSON Schema for editors instead");
+  std::vector<std::pair<CLI::App*, std::function<int()>>> others;
+  for (const auto& [name, entry] : command_registry().entries()) {
+    auto* const command = app.add_subcommand(name, entry.summary);
+    others.emplace_back(command, command_registry().find(name, {})(*command));
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -172,6 +169,8 @@ int dispatch(int argc, char** argv) {
   if (*check_command) return check(arguments);
   if (*plot_command) return plot(arguments);
   if (*list_command) return list(arguments);
+  for (const auto& [command, execute] : others)
+    if (*command) return execute();
   return schema(arguments);
 }
 

@@ -186,6 +186,17 @@ Node extended(Node tree, const std::string& file) {
   return extended_along(std::move(tree), {std::filesystem::path(file).lexically_normal().string()});
 }
 
+std::vector<Override> overrides_of(const std::vector<std::string>& settings) {
+  std::vector<Override> overrides;
+  for (const std::string& text : settings) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw CaseError(fmt::format("--set {}: expected KEY=VALUE, for example --set end_time=\"10 s\"", text));
+    overrides.push_back({text.substr(0, equals), text.substr(equals + 1)});
+  }
+  return overrides;
+}
+
 void apply_overrides(const std::vector<Override>& overrides, Node& tree, Problems& problems) {
   for (const Override& setting : overrides) {
     try {

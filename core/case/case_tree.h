@@ -1,6 +1,7 @@
 /// The tree of a case: a file with those that it extends, overrides applied, polygons of other files put in place.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/case/case.h"
@@ -11,6 +12,9 @@ namespace sluice {
 /// Merges `tree` into the file that its key `extends` names, and that into the next: maps are merged key by key,
 /// anything else is replaced. Each part keeps its place. `file` is the file of `tree`. Throws CaseError.
 Node extended(Node tree, const std::string& file);
+
+/// The overrides that `--set` gives as KEY=VALUE. Throws CaseError.
+std::vector<Override> overrides_of(const std::vector<std::string>& settings);
 
 /// Sets values along paths such as materials.core.cohesion or bodies.2.velocity; keys that do not exist are made.
 void apply_overrides(const std::vector<Override>& overrides, Node& tree, Problems& problems);

@@ -17,12 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path script() {
+fs::path find_script(const std::string& name) {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
-  for (const fs::path& candidate :
-       {program / "pictures.py", program / "../pictures.py", program / "../share/sluice/pictures.py"})
+  for (const fs::path& candidate : {program / name, program / ".." / name, program / "../share/sluice" / name})
     if (fs::exists(candidate)) return fs::canonical(candidate);
-  throw std::runtime_error(fmt::format("pictures.py was not found beside the program in {}", program.string()));
+  throw std::runtime_error(fmt::format("{} was not found beside the program in {}", name, program.string()));
 }
 
 std::string python() {
@@ -30,8 +29,8 @@ std::string python() {
   return fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
 }
 
-std::vector<std::string> command_line(const PictureRequest& request) {
-  std::vector<std::string> words = {python(), script().string(), request.folder.string()};
+std::vector<std::string> arguments_of(const PictureRequest& request) {
+  std::vector<std::string> words = {request.folder.string()};
   if (!request.fields.empty()) words.emplace_back("--fields");
   words.insert(words.end(), request.fields.begin(), request.fields.end());
   if (!request.times.empty()) words.emplace_back("--times");
@@ -60,18 +59,23 @@ void require_pictured_fields(const Case& definition, const Particles& particles)
 }
 
 bool draw_pictures(const PictureRequest& request) {
-  std::vector<std::string> words = command_line(request);
-  std::vector<char*> arguments;
-  for (auto& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  return run_script("pictures.py", arguments_of(request), request.quiet);
+}
+
+bool run_script(const std::string& name, const std::vector<std::string>& arguments, bool quiet) {
+  std::vector<std::string> words = {python(), find_script(name).string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (auto& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("the program that draws pictures could not be started");
   if (child == 0) {
-    if (request.quiet) {
+    if (quiet) {
       const int nowhere = open("/dev/null", O_WRONLY);
       if (nowhere >= 0) dup2(nowhere, STDOUT_FILENO);
     }
-    execvp(arguments[0], arguments.data());
+    execvp(pointers[0], pointers.data());
     fmt::print(stderr, "pictures: {} could not be started\n", words[0]);
     _exit(127);
   }

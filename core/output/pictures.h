@@ -21,8 +21,12 @@ struct PictureRequest {
 /// Throws CaseError at the first word of output.pictures that is no field of the results.
 void require_pictured_fields(const Case& definition, const Particles& particles);
 
-/// Waits for the script to end; true if it succeeded. The script stands beside the program or in its share folder, and
-/// is run by $SLUICE_PYTHON, else by Debian's python3. Throws std::runtime_error if there is no script.
+/// Runs a script that stands beside the program or in its share folder, by $SLUICE_PYTHON, else by Debian's python3,
+/// and waits for its end; true if it succeeded. `quiet` leaves out what it prints. Throws std::runtime_error if there
+/// is no such script.
+bool run_script(const std::string& name, const std::vector<std::string>& arguments, bool quiet);
+
+/// Draws with pictures.py, see run_script.
 bool draw_pictures(const PictureRequest& request);
 
 }  // namespace sluice

@@ -58,7 +58,7 @@ TEST(CommandLine, tells_its_version_and_its_options) {
   const Ending version = run_sluice({"--version"}, scratch.path());
   EXPECT_EQ(version.code, exit_code::done);
   EXPECT_TRUE(begins(version.out, "sluice 0."));
-  for (const auto* command : {"run", "check", "plot", "list", "schema"}) {
+  for (const auto* command : {"run", "check", "plot", "list", "schema", "element"}) {
     EXPECT_TRUE(holds(run_sluice({"--help"}, scratch.path()).out, std::string("\n  ") + command + " "));
     const Ending help = run_sluice({command, "--help"}, scratch.path());
     EXPECT_EQ(help.code, exit_code::done);
