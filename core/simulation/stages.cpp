@@ -105,8 +105,30 @@ void velocity_from_momentum(Scene<Dim>& scene, Items some) {
   });
 }
 
+namespace {
+
+/// What faces do to the new velocities of a block.
 template <int Dim>
-void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some) {
+void impose_faces(Scene<Dim>& scene, std::size_t b, double kick, double lightest, NodeFields<Dim>* without_friction) {
+  const auto& block = scene.blocks.node_blocks()[b];
+  if (without_friction == nullptr) {
+    scene.faces.fix_with_friction(block, scene.nodes.motion(b));
+    return;
+  }
+  without_friction->collect_force(scene.blocks, b);
+  std::array<Lane, block_nodes<Dim>> relief;
+  for (std::size_t n = 0; n < relief.size(); ++n) {
+    const double mass = scene.nodes.momentum(b)[n][0];
+    relief[n] = mass > lightest ? (kick / mass) * vector_part<Dim>(without_friction->force(b)[n]) : Lane{};
+  }
+  scene.faces.fix_with_friction(block, scene.nodes.motion(b), relief.data());
+}
+
+}  // namespace
+
+template <int Dim>
+void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some,
+                   NodeFields<Dim>* without_friction) {
   const auto timing = scene.clock.time(Stage::nodes);
   const double lightest = lightest_node(scene);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
@@ -115,7 +137,7 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
     if (collect_force) scene.nodes.collect_force(scene.blocks, b);
     accelerate<Dim>(block, scene.nodes.momentum(b), collect_force ? scene.nodes.force(b) : nullptr, kick, scene.gravity,
                     lightest, scene.nodes.motion(b));
-    scene.faces.fix_with_friction(block, scene.nodes.motion(b));
+    impose_faces(scene, b, kick, lightest, without_friction);
   });
 }
 
@@ -128,17 +150,7 @@ void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_fric
     const Lane* const momentum = scene.nodes.momentum(b);
     scene.nodes.add_force(scene.blocks, b);
     accelerate<Dim>(block, momentum, scene.nodes.force(b), kick, scene.gravity, lightest, scene.nodes.motion(b));
-    if (without_friction == nullptr) {
-      scene.faces.fix_with_friction(block, scene.nodes.motion(b));
-      return;
-    }
-    without_friction->collect_force(scene.blocks, b);
-    std::array<Lane, block_nodes<Dim>> relief;
-    for (std::size_t n = 0; n < relief.size(); ++n) {
-      const double mass = momentum[n][0];
-      relief[n] = mass > lightest ? (kick / mass) * vector_part<Dim>(without_friction->force(b)[n]) : Lane{};
-    }
-    scene.faces.fix_with_friction(block, scene.nodes.motion(b), relief.data());
+    impose_faces(scene, b, kick, lightest, without_friction);
   });
 }
 
@@ -185,14 +197,14 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
   return update;
 }
 
-#define SLUICE_INSTANTIATE(Dim)                                                   \
-  template bool activate_blocks<Dim>(Scene<Dim>&);                                \
-  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);            \
-  template void divide_by_mass<Dim>(const NodeBlock<Dim>&, const Lane*, Lane*);   \
-  template void velocity_from_momentum<Dim>(Scene<Dim>&, Items);                  \
-  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items);       \
-  template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*, Items); \
-  template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&);    \
+#define SLUICE_INSTANTIATE(Dim)                                                               \
+  template bool activate_blocks<Dim>(Scene<Dim>&);                                            \
+  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);                        \
+  template void divide_by_mass<Dim>(const NodeBlock<Dim>&, const Lane*, Lane*);               \
+  template void velocity_from_momentum<Dim>(Scene<Dim>&, Items);                              \
+  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items, NodeFields<Dim>*); \
+  template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*, Items);             \
+  template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&);                \
   template MotionUpdate<Dim> motion_update<Dim>(Scene<Dim>&, double, ColumnId);
 SLUICE_INSTANTIATE(2)
 SLUICE_INSTANTIATE(3)

@@ -39,13 +39,14 @@ template <int Dim>
 void velocity_from_momentum(Scene<Dim>& scene, Items some = everything);
 
 /// v_new = v + kick (f / m + g), with faces and their friction, eq. (18). With `collect_force` the force tiles are
-/// summed; without, the momentum holds the impulse already.
+/// summed; without, the momentum holds the impulse already. `without_friction`, or null, has in its force tiles a part
+/// of all forces, whose pressure on faces gives no friction.
 template <int Dim>
-void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some = everything);
+void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some = everything,
+                   NodeFields<Dim>* without_friction = nullptr);
 
 /// The same once more, from the momentum that the nodes have, with the force tiles added to the forces that they have:
-/// a correction, for example by a pressure that was not known before. `without_friction`, or null, has in its force
-/// tiles a part of all forces, whose pressure on faces gives no friction.
+/// a correction, for example by a pressure that was not known before.
 template <int Dim>
 void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction, Items some = everything);
 

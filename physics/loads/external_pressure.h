@@ -19,11 +19,14 @@
 
 namespace sluice {
 
-/// A pressure on whatever surface lies in a region.
+/// A pressure on whatever surface lies in a region: a given one, or that of a liquid which does not enter the pores.
 struct SurfaceLoad {
-  Table pressure;                ///< [Pa], pushes where positive
-  std::optional<Region> region;  ///< absent: everywhere
-  double fade = 0;               ///< [m] outside of the region over which it goes to zero
+  std::optional<Table> pressure;      ///< [Pa], pushes where positive
+  std::optional<Region> region = {};  ///< absent: everywhere
+  double fade = 0;                    ///< [m] outside of the region over which it goes to zero
+  std::optional<Table> level = {};    ///< of a liquid, in the place of `pressure` [m] along the last axis
+  double density = 1000;              ///< of the liquid [kg/m3]
+  double unit_weight = 0;             ///< of the liquid, from its density and the gravity of the case [N/m3]
 };
 
 /// Water that stands on the soil.
@@ -34,9 +37,11 @@ struct Pond {
 };
 
 /// The section `surface_loads` of a case. Throws CaseError.
-std::vector<SurfaceLoad> read_surface_loads(const Node& section, int dimension);
+std::vector<SurfaceLoad> read_surface_loads(const Case& definition);
 Node resolved_surface_loads(const std::vector<SurfaceLoad>& loads);
 const Schema<SurfaceLoad>& surface_load_schema();
+/// The section, for the reference of a physics module that reads it.
+FieldDoc surface_loads_doc();
 const Schema<Pond>& pond_schema();
 /// Checks the regions of a list of loads or ponds against the dimension of the grid.
 template <class T>

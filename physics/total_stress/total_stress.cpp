@@ -10,14 +10,15 @@ namespace sluice {
 
 namespace {
 
-const char* const refusal = "total_stress has neither water nor loads on surfaces; take `physics: two_phase`";
+const char* const refusal = "total_stress knows no water; take `physics: two_phase`";
 
 /// The case, if nothing in it asks for water. Throws CaseError.
 const Case& without_water(const Case& definition) {
   Problems problems;
-  for (const char* const key : {"water", "surface_loads"})
-    if (const Node* const section = definition.source.find(key))
-      problems.add(section->place, fmt::format("{}: the physics {}", key, refusal));
+  if (const Node* const section = definition.source.find("water"))
+    problems.add(section->place, fmt::format("water: the physics {}; a reservoir without water in the pores is a level "
+                                             "in `surface_loads`",
+                                             refusal));
   for (const auto& [name, section] : definition.materials)
     if (const Node* const pores = section.find("water"))
       problems.add(pores->place, fmt::format("material '{}': water: the physics {}", name, refusal));
@@ -29,7 +30,10 @@ const Case& without_water(const Case& definition) {
 
 template <int Dim>
 TotalStress<Dim>::TotalStress(const Case& definition)
-    : stress_(without_water(definition)), initial_stress_(read_initial_stress(definition.initial_stress)) {
+    : stress_(without_water(definition)),
+      initial_stress_(read_initial_stress(definition.initial_stress)),
+      loads_(read_surface_loads(definition)),
+      outside_(loads_, {}, 0, grid_of<Dim>(definition.grid)) {
   for (std::size_t m = 0; m < definition.materials.size(); ++m) {
     const auto& [name, section] = definition.materials[m];
     if (stress_.materials()[m].liquid())
@@ -40,6 +44,11 @@ TotalStress<Dim>::TotalStress(const Case& definition)
 template <int Dim>
 void TotalStress<Dim>::declare(Particles& particles) {
   stress_.declare(particles.columns, particles.mass);
+  if (!outside_.any()) return;
+  pressed_.declare(particles);
+  loaded_stress_ = particles.columns.declare(
+      {"loaded_stress", "Pa", Dim, Role::derived, "Normal stresses with the pressure from outside.", false});
+  no_stress_ = particles.columns.declare({"no_stress", "Pa", 1, Role::derived, "Zeros.", false});
 }
 
 template <int Dim>
@@ -49,7 +58,14 @@ double TotalStress<Dim>::density(int material) const {
 
 template <int Dim>
 void TotalStress<Dim>::initialise(Scene<Dim>& scene) {
-  apply_initial_stress(initial_stress_, scene, stress_.materials());
+  SkeletonLoads<Dim> loads;
+  if (outside_.any()) {
+    activate_blocks(scene);
+    double* push = scene.particles.columns.data(loaded_stress_);
+    std::fill_n(push, scene.particles.size(), 0.0);
+    loads = pressed_.at_rest(scene, outside_, stress_.workspaces(), push);
+  }
+  apply_initial_stress(initial_stress_, scene, stress_.materials(), loads);
   stress_.initialise(scene);
 }
 
@@ -70,6 +86,8 @@ template <int Dim>
 void TotalStress<Dim>::step(Scene<Dim>& scene, double dt) {
   activate_blocks(scene);
   stress_.begin_step(scene);
+  pressed_.begin_step(scene);
+  if (rough_under_load(scene)) wall_.resize(scene.blocks, scene.shape->degree());
   switch (stress_.timing()) {
     case StressTiming::usf:
       step_usf(scene, dt);
@@ -81,6 +99,7 @@ void TotalStress<Dim>::step(Scene<Dim>& scene, double dt) {
       step_musl(scene, dt);
       break;
   }
+  pressed_.end_step();
   stress_.end_step(scene);
 }
 
@@ -89,12 +108,22 @@ template <int Dim>
 void TotalStress<Dim>::step_usf(Scene<Dim>& scene, double dt) {
   Sweep<Dim> sweep(scene.blocks);
   sweep.over_particles([&](Items some) { scatter(scene, ScatterWhat::momentum, 0, some); });
+  if (outside_.any())
+    sweep.over_particles([&](Items some) {
+      const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+        pressed_.take(scene, block, work.motion_tile.data(), outside_);
+        pressed_.start_work(scene, b, block);
+      };
+      for_each_block(scene, stress_.workspaces(), body, some);
+    });
   sweep.over_nodes([&](Items some) { velocity_from_momentum(scene, some); });
-  stress_.update(sweep, scene, scene.previous_dt, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>&) {
-    scene.shape->scatter(ScatterWhat::force, scene.scatter_input(block), 0, nullptr, scene.nodes.force_tile(b));
+  stress_.update(sweep, scene, scene.previous_dt, [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+    pressed_.add_work(scene, b, block);  // that of the volumes
+    scatter_forces(scene, b, block, work, ScatterWhat::force);
   });
-  sweep.over_nodes([&](Items some) { advance_nodes(scene, scene.kick(dt), false, true, some); });
+  sweep.over_nodes([&](Items some) { advance_nodes(scene, scene.kick(dt), false, true, some, loads_alone(scene)); });
   stress_.gather_motion(sweep, scene, dt);
+  add_load_work(sweep, scene);
   sweep.run();
 }
 
@@ -104,6 +133,7 @@ void TotalStress<Dim>::step_usl(Scene<Dim>& scene, double dt) {
   Sweep<Dim> sweep(scene.blocks);
   scatter_momentum_and_advance(sweep, scene, dt);
   stress_.gather_motion_and_update(sweep, scene, dt);
+  add_load_work(sweep, scene);
   sweep.run();
 }
 
@@ -113,6 +143,7 @@ void TotalStress<Dim>::step_musl(Scene<Dim>& scene, double dt) {
   Sweep<Dim> sweep(scene.blocks);
   scatter_momentum_and_advance(sweep, scene, dt);
   stress_.gather_motion_and_map_again(sweep, scene, dt);
+  add_load_work(sweep, scene);
   sweep.run();
 }
 
@@ -120,25 +151,77 @@ void TotalStress<Dim>::step_musl(Scene<Dim>& scene, double dt) {
 /// functions, where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::smooth).
 template <int Dim>
 void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
+  const double kick = scene.kick(dt);
+  if (outside_.any()) {
+    sweep.over_particles([this, &scene](Items some) {
+      const auto timing = scene.clock.time(Stage::scatter);
+      const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+        scatter_forces(scene, b, block, work, ScatterWhat::momentum_and_force);
+      };
+      for_each_block(scene, stress_.workspaces(), body, some);
+    });
+    sweep.over_nodes(
+        [this, &scene, kick](Items some) { advance_nodes(scene, kick, true, true, some, loads_alone(scene)); });
+    return;
+  }
   const bool together = scene.transfer.affine && scene.shape->smooth();
   const auto what = together ? ScatterWhat::momentum_and_impulse : ScatterWhat::momentum_and_force;
-  const double kick = scene.kick(dt);
   sweep.over_particles([&scene, what, kick](Items some) { scatter(scene, what, kick, some); });
   sweep.over_nodes([&scene, together, kick](Items some) { advance_nodes(scene, kick, true, !together, some); });
+}
+
+/// Forces of stresses and loads, eq. (34), and momentum if `what` says so. The work of loads counts from here.
+template <int Dim>
+void TotalStress<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
+                                      Workspace<Dim>& work, ScatterWhat what) {
+  ScatterInput<Dim> in = scene.scatter_input(block);
+  if (!outside_.any()) {
+    scene.shape->scatter(what, in, 0, scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
+    return;
+  }
+  Columns& columns = scene.particles.columns;
+  pressed_.take(scene, block, work.motion_tile.data(), outside_);
+  const double* here = pressed_.pressure(scene.particles);
+  for (int a = 0; a < Dim; ++a) {
+    const double* own = in.stress[a];
+    double* loaded = columns.data(loaded_stress_, a);
+    for (std::uint32_t p = block.begin; p < block.end; ++p) loaded[p] = own[p] + here[p];
+    in.stress[a] = loaded;
+  }
+  pressed_.scatter(scene, b, in, what, scene.nodes);
+  if (rough_under_load(scene)) {
+    in.stress.fill(columns.data(no_stress_));
+    for (int a = 0; a < Dim; ++a) in.stress[a] = here;
+    pressed_.scatter(scene, b, in, ScatterWhat::force, wall_);
+  }
+  pressed_.start_work(scene, b, block);
+}
+
+template <int Dim>
+void TotalStress<Dim>::add_load_work(Sweep<Dim>& sweep, Scene<Dim>& scene) {
+  if (!outside_.any()) return;
+  sweep.over_particles([this, &scene](Items some) {
+    const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>&) { pressed_.add_work(scene, b, block); };
+    for_each_block(scene, stress_.workspaces(), body, some);
+  });
 }
 
 // ---- reporting ----
 
 template <int Dim>
 std::vector<std::pair<std::string, double>> TotalStress<Dim>::energies(const Scene<Dim>& scene) const {
-  return {{"kinetic", kinetic_energy(scene)},
-          {"elastic", stress_.materials().stored_energy(scene.particles)},
-          {"potential", potential_energy(scene)}};
+  std::vector<std::pair<std::string, double>> all = {{"kinetic", kinetic_energy(scene)},
+                                                     {"elastic", stress_.materials().stored_energy(scene.particles)},
+                                                     {"potential", potential_energy(scene)}};
+  if (outside_.any()) all.emplace_back("load_work", pressed_.work());
+  return all;
 }
 
 template <int Dim>
 std::vector<std::pair<std::string, Node>> TotalStress<Dim>::resolved_sections() const {
-  return {{"materials", stress_.materials().resolved()}, {"initial_stress", resolved(initial_stress_)}};
+  return {{"materials", stress_.materials().resolved()},
+          {"initial_stress", resolved(initial_stress_)},
+          {"surface_loads", resolved_surface_loads(loads_)}};
 }
 
 namespace {
@@ -148,7 +231,8 @@ const char* const summary =
 
 template <int Dim>
 bool register_module() {
-  return physics_registry<Dim>().add("total_stress", {summary, {}},
+  const auto keys = [] { return std::vector<FieldDoc>{surface_loads_doc()}; };
+  return physics_registry<Dim>().add("total_stress", {summary, keys},
                                      [](const Case& definition) -> std::unique_ptr<PhysicsModule<Dim>> {
                                        return std::make_unique<TotalStress<Dim>>(definition);
                                      });

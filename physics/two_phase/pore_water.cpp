@@ -45,9 +45,7 @@ void PoreWater<Dim>::declare(Particles& particles, bool with_body_force) {
   total_stress_ =
       columns.declare({"total_normal_stress", "Pa", Dim, derived, "Normal stresses that forces come from.", false});
   zero_ = columns.declare({"zero", "1", 1, derived, "Zeros.", false});
-  if (!with_body_force) return;
-  outside_pressure_ = columns.declare({"outside_pressure", "Pa", 1, derived, "Pressure from outside.", false});
-  body_force_ = columns.declare({"body_force", "N", Dim, derived, "Force that goes with outside pressure.", false});
+  if (with_body_force) pressed_.declare(particles);
 }
 
 template <int Dim>
@@ -122,30 +120,10 @@ SkeletonLoads<Dim> PoreWater<Dim>::skeleton_loads(Scene<Dim>& scene, const Exter
   Columns& columns = scene.particles.columns;
   double* push = columns.data(new_pressure_);
   std::ranges::copy(columns.values(pressure_), push);
-  SkeletonLoads<Dim> loads{push, {}};
-  if (!outside.any()) return loads;
-  for_each_block(scene, workspaces, [&](std::size_t, const auto& block, Workspace<Dim>& work) {
-    take_outside_pressure(scene, block, work.motion_tile.data(), outside);
-    for (std::uint32_t p = block.begin; p < block.end; ++p) push[p] -= columns.data(outside_pressure_)[p];
-  });
-  for (int a = 0; a < Dim; ++a) loads.body_force[a] = columns.data(body_force_, a);
-  return loads;
+  return outside.any() ? pressed_.at_rest(scene, outside, workspaces, push) : SkeletonLoads<Dim>{push, {}};
 }
 
 // ---- forces ----
-
-template <int Dim>
-void PoreWater<Dim>::take_outside_pressure(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
-                                           const ExternalPressure<Dim>& outside) {
-  Columns& columns = scene.particles.columns;
-  const double* volume = columns.data(scene.particles.volume);
-  FieldGather<Dim> out{columns.data(outside_pressure_), {}};
-  for (int a = 0; a < Dim; ++a) out.gradient[a] = columns.data(body_force_, a);
-  outside.load(block.first_cell, scene.time, tile);
-  linear_->gather_field(scene.view(block), tile, out);
-  for (int a = 0; a < Dim; ++a)
-    for (std::uint32_t p = block.begin; p < block.end; ++p) out.gradient[a][p] *= -volume[p];
-}
 
 template <int Dim>
 void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
@@ -159,20 +137,17 @@ void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const Part
     for (std::uint32_t p = block.begin; p < block.end; ++p) total[p] = effective[p] - water_.increment * pressure[p];
     in.stress[a] = total;
   }
-  if (outside.any()) {
-    take_outside_pressure(scene, block, tile, outside);
-    const double* here = columns.data(outside_pressure_);
-    for (int a = 0; a < Dim; ++a) {
-      double* total = columns.data(total_stress_, a);
-      for (std::uint32_t p = block.begin; p < block.end; ++p) total[p] += here[p];
-      in.body_force[a] = columns.data(body_force_, a);
-    }
-    // Body forces go with the forces alone.
-    if (what == ScatterWhat::momentum_and_force)
-      scene.shape->scatter(ScatterWhat::momentum, in, 0, scene.nodes.momentum_tile(b), nullptr);
-    what = ScatterWhat::force;
+  if (!outside.any()) {
+    scene.shape->scatter(what, in, 0, scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
+    return;
   }
-  scene.shape->scatter(what, in, 0, scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
+  pressed_.take(scene, block, tile, outside);
+  const double* here = pressed_.pressure(scene.particles);
+  for (int a = 0; a < Dim; ++a) {
+    double* total = columns.data(total_stress_, a);
+    for (std::uint32_t p = block.begin; p < block.end; ++p) total[p] += here[p];
+  }
+  pressed_.scatter(scene, b, in, what, scene.nodes);
 }
 
 template <int Dim>
@@ -234,7 +209,7 @@ void PoreWater<Dim>::scatter_pressure(Scene<Dim>& scene, std::size_t b, const Pa
   double* stress = columns.data(total_stress_);
   for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] = -pressure[p];
   if (outside.any()) {
-    const double* here = columns.data(outside_pressure_);
+    const double* here = pressed_.pressure(scene.particles);
     for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] += here[p];
   }
   scatter_isotropic(scene, block, stress, nodes.force_tile(b));
@@ -394,22 +369,6 @@ double PoreWater<Dim>::fastest_sound(const Particles& particles) const {
                                                            : (modulus + wet) / density);
   }
   return std::sqrt(fastest);
-}
-
-template <int Dim>
-typename PoreWater<Dim>::OutsideSums PoreWater<Dim>::outside_sums(const Scene<Dim>& scene,
-                                                                  const ParticleBlock<Dim>& block) const {
-  const Columns& columns = scene.particles.columns;
-  const double* pressure = columns.data(outside_pressure_);
-  const double* volume = columns.data(scene.particles.volume);
-  OutsideSums sums;
-  for (std::uint32_t p = block.begin; p < block.end; ++p) sums.pressure_volume += pressure[p] * volume[p];
-  for (int a = 0; a < Dim; ++a) {
-    const double* force = columns.data(body_force_, a);
-    const double* position = columns.data(scene.particles.position, a);
-    for (std::uint32_t p = block.begin; p < block.end; ++p) sums.force_position += force[p] * position[p];
-  }
-  return sums;
 }
 
 template <int Dim>

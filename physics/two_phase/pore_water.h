@@ -6,7 +6,7 @@
 
 #include "core/simulation/stages.h"
 #include "physics/initial_stress/initial_stress.h"
-#include "physics/loads/external_pressure.h"
+#include "physics/loads/pressed_particles.h"
 #include "physics/materials/materials.h"
 #include "physics/two_phase/cell_sums.h"
 #include "physics/two_phase/pressure_equation.h"
@@ -82,23 +82,15 @@ class PoreWater {
   /// Largest speed of sound, where no drag holds the water back [m/s].
   double fastest_sound(const Particles& particles) const;
 
-  /// Sums of P V and of f x over the particles of a block, with the outside pressure P and the force f = -V grad P of
-  /// the predictor [J]. Where volumes change, P does the work of minus what is gained of the first; where positions
-  /// change, f does that of the second.
-  struct OutsideSums {
-    double pressure_volume = 0, force_position = 0;
-  };
-  OutsideSums outside_sums(const Scene<Dim>& scene, const ParticleBlock<Dim>& block) const;
+  /// The pressure from outside at the particles.
+  PressedParticles<Dim>& pressed() { return pressed_; }
+  const PressedParticles<Dim>& pressed() const { return pressed_; }
 
   /// Energy stored in the compressed water [J].
   double compression_energy(const Particles& particles) const;
 
   /// How easily water passes a material.
   Mobility<Dim> mobility(const PoreSpace& space) const;
-
-  /// Outside pressure at the particles, and the force that goes with it; `scatter_forces` does it, too.
-  void take_outside_pressure(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
-                             const ExternalPressure<Dim>& outside);
 
  private:
   double sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
@@ -114,7 +106,7 @@ class PoreWater {
 
   ColumnId pressure_, pressure_gradient_, porosity_, solid_mass_, inertia_, wet_;  // state
   ColumnId divergence_, acceleration_, new_pressure_, total_stress_, zero_;        // derived
-  ColumnId outside_pressure_, body_force_;
+  PressedParticles<Dim> pressed_;
 };
 
 }  // namespace sluice

@@ -24,7 +24,7 @@ template <int Dim>
 TwoPhase<Dim>::TwoPhase(const Case& definition)
     : water_(read_water(definition)),
       initial_stress_(read_initial_stress(definition.initial_stress)),
-      loads_(read_surface_loads(definition.surface_loads, Dim)),
+      loads_(read_surface_loads(definition)),
       stress_(without_pores(definition)),
       pores_(water_, read_pore_spaces(definition, water_, liquids(stress_.materials())), stress_.materials()),
       relative_(definition, water_, pores_),
@@ -144,7 +144,7 @@ void TwoPhase<Dim>::predict(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
   const bool stress_first = stress_.timing() == StressTiming::usf;
   const auto forces = [this, &scene](std::size_t b, const auto& block, Workspace<Dim>& work, ScatterWhat what) {
     pores_.scatter_forces(scene, b, block, work.motion_tile.data(), outside_, what);
-    start_load_work(scene, b, block);
+    pores_.pressed().start_work(scene, b, block);
   };
   sweep.over_particles([this, &scene, forces, stress_first](Items some) {
     const auto timing = scene.clock.time(Stage::scatter);
@@ -154,8 +154,8 @@ void TwoPhase<Dim>::predict(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
         return;
       }
       scene.shape->scatter(ScatterWhat::momentum, scene.scatter_input(block), 0, scene.nodes.momentum_tile(b), nullptr);
-      if (outside_.any()) pores_.take_outside_pressure(scene, block, work.motion_tile.data(), outside_);
-      start_load_work(scene, b, block);
+      if (outside_.any()) pores_.pressed().take(scene, block, work.motion_tile.data(), outside_);
+      pores_.pressed().start_work(scene, b, block);
     };
     for_each_block(scene, stress_.workspaces(), body, some);
   });
@@ -163,7 +163,7 @@ void TwoPhase<Dim>::predict(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
   if (stress_first) {
     sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, some); });
     stress_.update(sweep, scene, scene.previous_dt, [=, this, &scene](std::size_t b, const auto& block, auto& work) {
-      add_load_work(scene, b, block);
+      pores_.pressed().add_work(scene, b, block);
       forces(b, block, work, ScatterWhat::force);
     });
   }
@@ -180,7 +180,7 @@ void TwoPhase<Dim>::collect(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
     const auto timing = scene.clock.time(Stage::pressure_assembly);
     const auto relative = relative_.velocity(scene.particles);
     const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
-      if (pressure_.is_wet(b)) sums_[b].dissipation = pores_.collect(scene, b, block, work, kick, relative, pressure_);
+      if (pressure_.is_wet(b)) dissipation_[b] = pores_.collect(scene, b, block, work, kick, relative, pressure_);
     };
     for_each_block(scene, stress_.workspaces(), body, some);
   });
@@ -222,7 +222,7 @@ void TwoPhase<Dim>::gather(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
   sweep.over_particles([this, &scene](Items some) {
     const auto timing = scene.clock.time(Stage::gather);
     const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>&) {
-      add_load_work(scene, b, block);
+      pores_.pressed().add_work(scene, b, block);
       pores_.follow_volume(scene, block);
     };
     for_each_block(scene, stress_.workspaces(), body, some);
@@ -233,30 +233,14 @@ void TwoPhase<Dim>::gather(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
 
 template <int Dim>
 void TwoPhase<Dim>::begin_sums(const Scene<Dim>& scene) {
-  sums_.assign(scene.blocks.particle_blocks().size(), {});
+  dissipation_.assign(scene.blocks.particle_blocks().size(), 0);
+  pores_.pressed().begin_step(scene);
 }
 
 template <int Dim>
 void TwoPhase<Dim>::end_sums(double kick) {
-  for (const BlockSums& block : sums_) {
-    dissipated_ += kick * block.dissipation;
-    load_work_ += block.load_work;
-  }
-}
-
-/// Counts the work of the outside pressure that the particles of a block have taken, from here on.
-template <int Dim>
-void TwoPhase<Dim>::start_load_work(const Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block) {
-  if (outside_.any()) sums_[b].outside = pores_.outside_sums(scene, block);
-}
-
-/// Adds the work done since then.
-template <int Dim>
-void TwoPhase<Dim>::add_load_work(const Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block) {
-  if (!outside_.any()) return;
-  const auto now = pores_.outside_sums(scene, block);
-  const auto& before = sums_[b].outside;
-  sums_[b].load_work += now.force_position - before.force_position - (now.pressure_volume - before.pressure_volume);
+  for (const double power : dissipation_) dissipated_ += kick * power;
+  pores_.pressed().end_step();
 }
 
 // ---- limits ----
@@ -290,7 +274,7 @@ std::vector<TimeStepLimit> TwoPhase<Dim>::hard_limits(const Scene<Dim>& scene) c
 
 template <int Dim>
 void TwoPhase<Dim>::store(Archive& archive) const {
-  archive.reals["two_phase"] = {stress_.fastest_wave(), dissipated_, discharge_, load_work_};
+  archive.reals["two_phase"] = {stress_.fastest_wave(), dissipated_, discharge_, pores_.pressed().work()};
   pressure_.store(archive);
 }
 
@@ -300,7 +284,7 @@ void TwoPhase<Dim>::restore(const Archive& archive) {
   stress_.restore_fastest_wave(own.at(0));
   dissipated_ = own.at(1);
   discharge_ = own.at(2);
-  load_work_ = own.at(3);
+  pores_.pressed().restore_work(own.at(3));
   pressure_.restore(archive);
   placed_ = false;
 }
@@ -313,7 +297,7 @@ std::vector<std::pair<std::string, double>> TwoPhase<Dim>::energies(const Scene<
       {"potential", potential_energy(scene)},
       {"water_compression", pores_.compression_energy(scene.particles)},
       {"seepage_dissipation", dissipated_}};
-  if (outside_.any()) all.emplace_back("load_work", load_work_);
+  if (outside_.any()) all.emplace_back("load_work", pores_.pressed().work());
   return all;
 }
 

@@ -47,8 +47,6 @@ class TwoPhase final : public PhysicsModule<Dim> {
   void gather(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt);
   void begin_sums(const Scene<Dim>& scene);
   void end_sums(double kick);
-  void start_load_work(const Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block);
-  void add_load_work(const Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block);
 
   std::vector<TimeStepLimit> limits(const Scene<Dim>& scene, const SafetyFactors& factors) const;
 
@@ -60,18 +58,11 @@ class TwoPhase final : public PhysicsModule<Dim> {
   RelativeMotion<Dim> relative_;
   ExternalPressure<Dim> outside_;
   PressureEquation<Dim> pressure_;
-  NodeFields<Dim> wall_;  // forces of the pressure alone, which presses on faces without friction
-  /// Of a block, in a step.
-  struct BlockSums {
-    double dissipation = 0;                             // power of the flow through the pores [W]
-    typename PoreWater<Dim>::OutsideSums outside = {};  // where the work of loads is counted from
-    double load_work = 0;                               // [J]
-  };
-  std::vector<BlockSums> sums_;
-  double dissipated_ = 0;  // [J], since the start
-  double load_work_ = 0;   // of the pressures on the surface, likewise
-  double discharge_ = 0;   // of the steady seepage at the start [m3/s]
-  bool placed_ = false;    // the pressure equation knows the blocks
+  NodeFields<Dim> wall_;             // forces of the pressure alone, which presses on faces without friction
+  std::vector<double> dissipation_;  // by block, in a step: power of the flow through the pores [W]
+  double dissipated_ = 0;            // [J], since the start
+  double discharge_ = 0;             // of the steady seepage at the start [m3/s]
+  bool placed_ = false;              // the pressure equation knows the blocks
 };
 
 }  // namespace sluice

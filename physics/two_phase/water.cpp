@@ -265,22 +265,17 @@ WaterCase read_water(const Case& definition) {
 
 Node resolved(const WaterCase& water) { return schema().write(water); }
 std::vector<FieldDoc> water_docs() {
-  return {
-      {.name = "water",
-       .type = field_type::section,
-       .default_text = "the defaults of its keys",
-       .sentence = "Top-level section of the case: water in the pores and beside the soil.",
-       .nested = schema().docs()},
-      {.name = "materials.NAME.water",
-       .type = field_type::section,
-       .default_text = "the material is dry",
-       .sentence = "The pores of a material that is saturated; its `density` is that of the dry soil.",
-       .nested = pore_schema().docs()},
-      {.name = "surface_loads",
-       .type = field_type::sections,
-       .default_text = "none",
-       .sentence = "Top-level section of the case: pressures on the surface of the material, with no water in them.",
-       .nested = surface_load_schema().docs()}};
+  return {{.name = "water",
+           .type = field_type::section,
+           .default_text = "the defaults of its keys",
+           .sentence = "Top-level section of the case: water in the pores and beside the soil.",
+           .nested = schema().docs()},
+          {.name = "materials.NAME.water",
+           .type = field_type::section,
+           .default_text = "the material is dry",
+           .sentence = "The pores of a material that is saturated; its `density` is that of the dry soil.",
+           .nested = pore_schema().docs()},
+          surface_loads_doc()};
 }
 
 std::vector<PoreSpace> read_pore_spaces(const Case& definition, const WaterCase& water,

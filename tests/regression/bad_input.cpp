@@ -94,7 +94,7 @@ TEST(BadCase, has_an_unknown_unit) { expect_refused(with(column, "2 MPa", "2 psi
 
 TEST(BadCase, has_water_that_its_physics_does_not_know) {
   expect_refused(with(column, "end_time: 1 s", "end_time: 1 s\nwater: {density: 1 t/m3}"),
-                 {"case.yaml:21:8", "water: the physics total_stress has neither water", "`physics: two_phase`"});
+                 {"case.yaml:21:8", "water: the physics total_stress knows no water", "`physics: two_phase`"});
 }
 
 TEST(BadCase, has_an_unknown_face_of_the_water) {

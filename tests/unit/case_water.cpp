@@ -145,7 +145,14 @@ TEST(CaseWater, WantsListsOfLoadsAndPonds) {
             std::string::npos);
   EXPECT_NE(with_water("ponds: {level: 1 m}").find("expected a list of sections"), std::string::npos);
   EXPECT_NE(with_more("surface_loads: [{pressure: 1 m}]\n").find("c.yaml:12:28"), std::string::npos);
-  EXPECT_NE(with_more("surface_loads: [{}]\n").find("'pressure' is missing"), std::string::npos);
+  EXPECT_NE(with_more("surface_loads: [{}]\n").find("'pressure' is missing, and so is 'level'"), std::string::npos);
+  EXPECT_EQ(with_more("surface_loads: [{pressure: 1 kPa, level: 1 m}]\n"),
+            "c.yaml:12:42: surface load: give `pressure` or `level`, not both");
+  EXPECT_EQ(with_more("surface_loads: [{pressure: 1 kPa, density: 1 t/m3}]\n"),
+            "c.yaml:12:44: surface load: density belongs to a liquid; it needs `level`");
+  EXPECT_EQ(
+      message_of(replaced(column, "gravity: [0, -9.81 m/s2]", "gravity: [0, 0]") + "surface_loads: [{level: 1 m}]\n"),
+      "c.yaml:12:25: surface load: a level needs gravity that points down along the last axis");
 }
 
 TEST(CaseWater, ChangesMustBeOfKnownMaterialsThatHoldTheSame) {
@@ -192,16 +199,16 @@ std::string in_total_stress(const std::string& from, const std::string& to) {
   return message_of(replaced(replaced(column, "two_phase", "total_stress"), from, to));
 }
 
-TEST(CaseTotalStress, RefusesWaterAndLoads) {
-  const std::string end = "total_stress has neither water nor loads on surfaces; take `physics: two_phase`";
-  EXPECT_EQ(in_total_stress("", ""),
-            "c.yaml:8:17: material 'soil': water: the physics " + end + "\nc.yaml:11:8: water: the physics " + end);
+TEST(CaseTotalStress, RefusesWater) {
+  const std::string end = "total_stress knows no water; take `physics: two_phase`";
+  EXPECT_EQ(in_total_stress("", ""), "c.yaml:8:17: material 'soil': water: the physics " + end +
+                                         "\nc.yaml:11:8: water: the physics " + end +
+                                         "; a reservoir without water in the pores is a level in `surface_loads`");
   const std::string dry = replaced(replaced(column, ",\n         water: {porosity: 0.4, permeability: 1e-4 m/s}}", "}"),
                                    "water: {density: 1000 kg/m3}\n", "");
   const std::string single = replaced(dry, "two_phase", "total_stress");
   EXPECT_EQ(message_of(single), "");
-  EXPECT_EQ(message_of(single + "surface_loads: [{pressure: 1 kPa}]\n"),
-            "c.yaml:10:16: surface_loads: the physics " + end);
+  EXPECT_EQ(message_of(single + "surface_loads: [{pressure: 1 kPa}, {level: 3 m}]\n"), "");
   EXPECT_EQ(
       message_of(replaced(single, "model: linear_elastic, density: 1600 kg/m3, youngs_modulus: 1 MPa", "model: water")),
       "c.yaml:7:17: material 'soil': the physics " + end);
