@@ -13,7 +13,7 @@ Case case_of(Node tree, const std::string& file, const std::vector<Override>& ov
   Node source = extended(std::move(tree), file);
   apply_overrides(overrides, source, problems);
   Node whole = source;
-  resolve_polygons(whole, file, problems);
+  resolve_files(whole, file, problems);
   Case definition = case_schema().read(whole, {"extends"}, problems);
   definition.file = file;
   definition.source = std::move(source);

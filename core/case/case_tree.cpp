@@ -129,13 +129,37 @@ void apply(const Override& setting, Node& tree) {
   *node = value;
 }
 
-/// Files that polygons come from; each is read once.
-class PolygonFiles {
+/// Files that a case names. Those that polygons come from are read once.
+class NamedFiles {
  public:
-  PolygonFiles(std::string case_file, Problems& problems) : case_file_(std::move(case_file)), problems_(problems) {}
+  NamedFiles(std::string case_file, Problems& problems) : case_file_(std::move(case_file)), problems_(problems) {}
 
+  /// In a region, and in the regions that it is made of.
   void resolve(Node* shapes) {
-    Node* const polygon = shapes == nullptr ? nullptr : shapes->find("polygon");
+    if (shapes == nullptr) return;
+    resolve_polygon(shapes);
+    for (const char* const raster : {"below_raster", "above_raster"}) complete(shapes, raster);
+    for (const char* const combination : {"union", "intersection", "difference"})
+      if (Node* const regions = shapes->find(combination))
+        for (Node& region : regions->items) resolve(&region);
+  }
+
+  /// The whole name of a file that must exist, so that the resolved case finds it from any folder.
+  void complete(Node* section, const std::string& key) {
+    Node* const name = section == nullptr ? nullptr : section->find(key);
+    if (name == nullptr || name->kind != Node::Kind::scalar || name->scalar.empty()) return;
+    const std::string file = path_of(*name, name->scalar);
+    if (std::filesystem::is_regular_file(file)) {
+      name->scalar = std::filesystem::absolute(file).lexically_normal().string();
+      return;
+    }
+    problems_.add(name->place, fmt::format("{}: there is no file '{}'", key, file));
+    erase(*section, key);
+  }
+
+ private:
+  void resolve_polygon(Node* shapes) {
+    Node* const polygon = shapes->find("polygon");
     if (polygon == nullptr || polygon->kind != Node::Kind::scalar) return;
     try {
       *polygon = find(*polygon);
@@ -146,7 +170,10 @@ class PolygonFiles {
     }
   }
 
- private:
+  std::string path_of(const Node& reference, const std::string& name) const {
+    return beside(reference.place.line == 0 ? case_file_ : reference.place.file, name);
+  }
+
   Node find(const Node& reference) {
     const auto hash = reference.scalar.find('#');
     if (hash == std::string::npos || hash == 0 || hash + 1 == reference.scalar.size())
@@ -166,8 +193,7 @@ class PolygonFiles {
   }
 
   const Node& read(const Node& reference, const std::string& name) {
-    const bool from_override = reference.place.line == 0;
-    const std::string file = beside(from_override ? case_file_ : reference.place.file, name);
+    const std::string file = path_of(reference, name);
     const auto known = files_.find(file);
     if (known != files_.end()) return known->second;
     if (!std::filesystem::is_regular_file(file))
@@ -207,14 +233,15 @@ void apply_overrides(const std::vector<Override>& overrides, Node& tree, Problem
   }
 }
 
-void resolve_polygons(Node& tree, const std::string& case_file, Problems& problems) {
-  PolygonFiles files(case_file, problems);
+void resolve_files(Node& tree, const std::string& case_file, Problems& problems) {
+  NamedFiles files(case_file, problems);
   if (Node* const bodies = tree.find("bodies"))
     for (Node& body : bodies->items) files.resolve(&body);
   if (Node* const observe = tree.find("observe"))
     for (Node& observation : observe->items) files.resolve(observation.find("region"));
   if (Node* const loads = tree.find("surface_loads"))
     for (Node& load : loads->items) files.resolve(load.find("region"));
+  files.complete(tree.find("initial_stress"), "file");
   Node* const water = tree.find("water");
   if (Node* const ponds = water != nullptr ? water->find("ponds") : nullptr)
     for (Node& pond : ponds->items) files.resolve(pond.find("region"));

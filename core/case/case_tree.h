@@ -1,4 +1,4 @@
-/// The tree of a case: a file with those that it extends, overrides applied, polygons of other files put in place.
+/// The tree of a case: a file with those that it extends, overrides applied, other files found.
 #pragma once
 
 #include <string>
@@ -19,8 +19,8 @@ std::vector<Override> overrides_of(const std::vector<std::string>& settings);
 /// Sets values along paths such as materials.core.cohesion or bodies.2.velocity; keys that do not exist are made.
 void apply_overrides(const std::vector<Override>& overrides, Node& tree, Problems& problems);
 
-/// Puts polygons in the place of references FILE.yaml#NAME. Files lie beside the file that names them, or beside
-/// `case_file` if an override does.
-void resolve_polygons(Node& tree, const std::string& case_file, Problems& problems);
+/// Puts polygons in the place of references FILE.yaml#NAME, and completes the names of rasters and of the results of
+/// earlier runs by their folders. Files lie beside the file that names them, or beside `case_file` if an override does.
+void resolve_files(Node& tree, const std::string& case_file, Problems& problems);
 
 }  // namespace sluice

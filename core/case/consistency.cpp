@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/case/case_schema.h"
+#include "core/case/region_schema.h"
 
 namespace sluice {
 
@@ -218,23 +219,57 @@ class Consistency {
 
 }  // namespace
 
-bool check_region(const Region& region, const Node& section, const std::string& what, std::size_t dimension,
-                  Problems& problems) {
-  const bool named =
-      section.find("box") || section.find("polygon") || section.find("half_space") || section.find("sphere");
-  if (!named && section.kind == Node::Kind::map)
-    problems.add(section.place, what + ": it has no shape; give one or more of box, polygon, half_space, sphere");
-  for (const Primitive& part : region.parts) {
-    std::size_t found = dimension;
-    std::string shape;
-    if (const auto* const box = std::get_if<Box>(&part)) found = box->min.size(), shape = "box";
-    if (const auto* const half = std::get_if<HalfSpace>(&part)) found = half->point.size(), shape = "half_space";
-    if (const auto* const ball = std::get_if<Sphere>(&part)) found = ball->centre.size(), shape = "sphere";
-    if (found == dimension) continue;
-    problems.add(place_of(section, shape),
-                 fmt::format("{}: found {} components; the grid has {} dimensions", shape, found, dimension));
+namespace {
+
+/// What a shape says of the dimension: its components, or 0 if it fits any.
+struct Dimension {
+  std::size_t components;
+  std::string shape;
+};
+
+Dimension dimension_of(const Primitive& part) {
+  if (const auto* const box = std::get_if<Box>(&part)) return {box->min.size(), "box"};
+  if (const auto* const half = std::get_if<HalfSpace>(&part)) return {half->point.size(), "half_space"};
+  if (const auto* const circle = std::get_if<Circle>(&part)) return {circle->centre.size(), "circle"};
+  if (const auto* const ball = std::get_if<Sphere>(&part)) return {ball->centre.size(), "sphere"};
+  return {0, ""};
+}
+
+/// The regions that a shape is made of, and the key under which they stand.
+std::pair<const std::vector<Region>*, std::string> parts_of(const Primitive& part) {
+  if (const auto* const all = std::get_if<Union>(&part)) return {&all->of, "union"};
+  if (const auto* const all = std::get_if<Intersection>(&part)) return {&all->of, "intersection"};
+  if (const auto* const all = std::get_if<Difference>(&part)) return {&all->of, "difference"};
+  return {nullptr, ""};
+}
+
+bool check_shape(const Primitive& part, const Node& section, std::size_t dimension, Problems& problems) {
+  if (const auto [regions, key] = parts_of(part); regions != nullptr) {
+    const Node& list = *section.find(key);
+    bool good = true;
+    for (std::size_t i = 0; i < regions->size(); ++i)
+      good = check_region((*regions)[i], list.items[i], "region", dimension, problems) && good;
+    return good;
+  }
+  if (const auto* const side = std::get_if<RasterSide>(&part); side != nullptr && dimension != 3) {
+    const std::string key = side->below ? "below_raster" : "above_raster";
+    problems.add(place_of(section, key), key + ": it is for 3-D; in 2-D take polygon");
     return false;
   }
+  const auto [found, shape] = dimension_of(part);
+  if (found == 0 || found == dimension) return true;
+  problems.add(place_of(section, shape), fmt::format("{}: found {} components; the grid has {} dimensions{}", shape,
+                                                     found, dimension, shape == "circle" ? "; take sphere" : ""));
+  return false;
+}
+
+}  // namespace
+
+bool check_region(const Region& region, const Node& section, const std::string& what, std::size_t dimension,
+                  Problems& problems) {
+  require_shape(section, what, problems);
+  for (const Primitive& part : region.parts)
+    if (!check_shape(part, section, dimension, problems)) return false;
   return !region.parts.empty();
 }
 

@@ -138,6 +138,156 @@ Bounds bounds_of(const Sphere& sphere, std::size_t) {
   return bounds;
 }
 
+// ---- layer ----
+
+bool contains(const Layer& layer, std::span<const double> x) {
+  return !(layer.bottom && x.back() < *layer.bottom) && !(layer.top && x.back() >= *layer.top);
+}
+
+double distance(const Layer& layer, std::span<const double> x) {
+  double least = infinity;
+  for (const auto& level : {layer.bottom, layer.top})
+    if (level) least = std::min(least, std::abs(x.back() - *level));
+  return least;
+}
+
+Bounds bounds_of(const Layer& layer, std::size_t dimension) {
+  Bounds bounds = everywhere(dimension);
+  if (layer.bottom) bounds[0].back() = *layer.bottom;
+  if (layer.top) bounds[1].back() = *layer.top;
+  return bounds;
+}
+
+// ---- raster ----
+
+/// To the plane that touches the surface above or below x; infinite where there is no surface.
+double distance(const RasterSide& side, std::span<const double> x) {
+  const auto surface = side.raster->height(x[0], x[1]);
+  if (!surface) return infinity;
+  const auto [slope_x, slope_y] = side.raster->slope(x[0], x[1]);
+  return std::abs(x.back() - *surface) / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+}
+
+/// The raster does not end the region sideways: beyond its edges it is unknown.
+Bounds bounds_of(const RasterSide& side, std::size_t dimension) {
+  Bounds bounds = everywhere(dimension);
+  const auto [lowest, highest] = side.raster->extremes();
+  if (side.below)
+    bounds[1].back() = highest;
+  else
+    bounds[0].back() = lowest;
+  return bounds;
+}
+
+// ---- what holds for every shape, and how regions are combined: Kleene's logic of three values ----
+
+template <class Shape>
+Membership membership(const Shape& shape, std::span<const double> x) {
+  return contains(shape, x) ? Membership::yes : Membership::no;
+}
+
+Membership membership(const RasterSide& side, std::span<const double> x) {
+  const auto surface = side.raster->height(x[0], x[1]);
+  if (!surface) return Membership::unknown;
+  return (x.back() < *surface) == side.below ? Membership::yes : Membership::no;
+}
+
+Membership opposite(Membership m) {
+  return m == Membership::yes ? Membership::no : m == Membership::no ? Membership::yes : Membership::unknown;
+}
+
+Membership membership(const Union& all, std::span<const double> x) {
+  Membership found = Membership::no;
+  for (const Region& region : all.of) found = std::max(found, region.membership(x));
+  return found;
+}
+
+Membership membership(const Intersection& all, std::span<const double> x) {
+  Membership found = Membership::yes;
+  for (const Region& region : all.of) found = std::min(found, region.membership(x));
+  return found;
+}
+
+Membership membership(const Difference& difference, std::span<const double> x) {
+  Membership found = difference.of.front().membership(x);
+  for (std::size_t i = 1; i < difference.of.size(); ++i)
+    found = std::min(found, opposite(difference.of[i].membership(x)));
+  return found;
+}
+
+template <class Shape>
+double distance_outside_of(const Shape& shape, std::span<const double> x) {
+  return membership(shape, x) == Membership::yes ? 0 : distance(shape, x);
+}
+
+double distance_outside_of(const Union& all, std::span<const double> x) {
+  double least = infinity;
+  for (const Region& region : all.of) least = std::min(least, region.distance_outside(x));
+  return least;
+}
+
+double distance_outside_of(const Intersection& all, std::span<const double> x) {
+  double largest = 0;
+  for (const Region& region : all.of) largest = std::max(largest, region.distance_outside(x));
+  return largest;
+}
+
+double distance_outside_of(const Difference& difference, std::span<const double> x) {
+  double largest = difference.of.front().distance_outside(x);
+  for (std::size_t i = 1; i < difference.of.size(); ++i)
+    if (difference.of[i].contains(x)) largest = std::max(largest, difference.of[i].distance_to_surface(x));
+  return largest;
+}
+
+/// Shapes that are made of regions.
+template <class Shape>
+concept Combination = requires(const Shape& shape) {
+  shape.of;
+};
+
+double distance(const Combination auto& combination, std::span<const double> x) {
+  double least = infinity;
+  for (const Region& region : combination.of) least = std::min(least, region.distance_to_surface(x));
+  return least;
+}
+
+/// Cuts `all` down to what `more` bounds.
+void intersect(Bounds& all, const Bounds& more) {
+  for (std::size_t a = 0; a < all[0].size(); ++a) {
+    all[0][a] = std::max(all[0][a], more[0][a]);
+    all[1][a] = std::min(all[1][a], more[1][a]);
+  }
+}
+
+bool empty(const Bounds& bounds) {
+  for (std::size_t a = 0; a < bounds[0].size(); ++a)
+    if (bounds[0][a] >= bounds[1][a]) return true;
+  return false;
+}
+
+Bounds bounds_of(const Union& all, std::size_t dimension) {
+  Bounds hull{std::vector<double>(dimension, infinity), std::vector<double>(dimension, -infinity)};
+  for (const Region& region : all.of) {
+    const Bounds bounds = region.bounds(static_cast<int>(dimension));
+    if (empty(bounds)) continue;
+    for (std::size_t a = 0; a < dimension; ++a) {
+      hull[0][a] = std::min(hull[0][a], bounds[0][a]);
+      hull[1][a] = std::max(hull[1][a], bounds[1][a]);
+    }
+  }
+  return hull;
+}
+
+Bounds bounds_of(const Intersection& all, std::size_t dimension) {
+  Bounds bounds = everywhere(dimension);
+  for (const Region& region : all.of) intersect(bounds, region.bounds(static_cast<int>(dimension)));
+  return bounds;
+}
+
+Bounds bounds_of(const Difference& difference, std::size_t dimension) {
+  return difference.of.front().bounds(static_cast<int>(dimension));
+}
+
 }  // namespace
 
 double Polygon::area() const {
@@ -150,10 +300,28 @@ double Polygon::area() const {
   return std::abs(twice) / 2;
 }
 
-bool Region::contains(std::span<const double> x) const {
-  return std::all_of(parts.begin(), parts.end(), [&](const Primitive& part) {
-    return std::visit([&](const auto& shape) { return sluice::contains(shape, x); }, part);
-  });
+Membership Region::membership(std::span<const double> x) const {
+  Membership found = Membership::yes;
+  for (const Primitive& part : parts) {
+    found = std::min(found, std::visit([&](const auto& shape) { return sluice::membership(shape, x); }, part));
+    if (found == Membership::no) break;
+  }
+  return found;
+}
+
+const Raster* Region::raster_without_value(std::span<const double> x) const {
+  const Raster* found = nullptr;
+  const auto look = [&]<class Shape>(const Shape& shape) {
+    if constexpr (std::is_same_v<Shape, RasterSide>) {
+      if (!shape.raster->height(x[0], x[1])) found = shape.raster.get();
+    } else if constexpr (Combination<Shape>) {
+      for (const Region& region : shape.of)
+        if (found == nullptr) found = region.raster_without_value(x);
+    }
+  };
+  for (const Primitive& part : parts)
+    if (found == nullptr) std::visit(look, part);
+  return found;
 }
 
 double Region::distance_to_surface(std::span<const double> x) const {
@@ -166,22 +334,15 @@ double Region::distance_to_surface(std::span<const double> x) const {
 double Region::distance_outside(std::span<const double> x) const {
   double largest = 0;
   for (const Primitive& part : parts)
-    largest = std::max(
-        largest,
-        std::visit([&](const auto& shape) { return sluice::contains(shape, x) ? 0.0 : distance(shape, x); }, part));
+    largest = std::max(largest, std::visit([&](const auto& shape) { return distance_outside_of(shape, x); }, part));
   return largest;
 }
 
 std::array<std::vector<double>, 2> Region::bounds(int dimension) const {
   const auto n = static_cast<std::size_t>(dimension);
   Bounds all = everywhere(n);
-  for (const Primitive& part : parts) {
-    const Bounds bounds = std::visit([&](const auto& shape) { return bounds_of(shape, n); }, part);
-    for (std::size_t a = 0; a < n; ++a) {
-      all[0][a] = std::max(all[0][a], bounds[0][a]);
-      all[1][a] = std::min(all[1][a], bounds[1][a]);
-    }
-  }
+  for (const Primitive& part : parts)
+    intersect(all, std::visit([&](const auto& shape) { return bounds_of(shape, n); }, part));
   return all;
 }
 

@@ -1,10 +1,15 @@
-/// Regions of space in a case file: boxes, polygons, half-spaces, spheres, and intersections of them.
+/// Regions of space in a case file: boxes, polygons, half-spaces, spheres, layers, what lies below or above a raster,
+/// and unions, intersections and differences of them.
 #pragma once
 
 #include <array>
+#include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
+
+#include "core/case/raster.h"
 
 namespace sluice {
 
@@ -30,13 +35,45 @@ struct Sphere {
   std::vector<double> centre;
   double radius = 0;
 };
+struct Circle : Sphere {};
 
-using Primitive = std::variant<Box, Polygon, HalfSpace, Sphere>;
+/// Between two levels along the last axis, half-open: bottom <= x < top. One of them may be absent.
+struct Layer {
+  std::optional<double> bottom, top;
+};
+
+/// What lies below the surface that a raster gives, or the rest: the surface itself, and all above. 3-D only.
+struct RasterSide {
+  std::shared_ptr<const Raster> raster;
+  bool below = true;
+};
+
+struct Region;
+
+struct Union {
+  std::vector<Region> of;
+};
+struct Intersection {
+  std::vector<Region> of;
+};
+/// The first less the others.
+struct Difference {
+  std::vector<Region> of;
+};
+
+using Primitive =
+    std::variant<Box, Polygon, HalfSpace, Sphere, Circle, Layer, RasterSide, Union, Intersection, Difference>;
+
+/// `unknown`: a raster has no value there, and it depends on that.
+enum class Membership { no, unknown, yes };
 
 /// The intersection of its parts.
 struct Region {
   std::vector<Primitive> parts;
-  bool contains(std::span<const double> x) const;
+  bool contains(std::span<const double> x) const { return membership(x) == Membership::yes; }
+  Membership membership(std::span<const double> x) const;
+  /// A raster of this region that has no value at x; null if all have.
+  const Raster* raster_without_value(std::span<const double> x) const;
   /// Distance from x to the nearest surface of any part [m].
   double distance_to_surface(std::span<const double> x) const;
   /// How far x lies outside: the largest distance to a part that does not hold it, 0 inside [m]. With several parts no

@@ -81,7 +81,9 @@ class Claims {
     std::size_t found = 0;
     for_lattice_points<Dim>(cells_around<Dim>(body.region, grid_), grid_, per_axis,
                             [&](const Vector<Dim>& x, std::int64_t number) {
-                              if (!body.region.contains(x)) return;
+                              const Membership membership = body.region.membership(x);
+                              if (membership == Membership::unknown) no_height(body, x);
+                              if (membership == Membership::no) return;
                               ++found;
                               const Claim claim{body_number, material_index_.at(body.material), pad(x)};
                               const auto [place, fresh] = lattice.emplace(number, claim);
@@ -100,6 +102,17 @@ class Claims {
     Vector<3> padded{};
     std::copy(x.begin(), x.end(), padded.begin());
     return padded;
+  }
+
+  /// Whether the point belongs to the body depends on a height that its raster does not have.
+  [[noreturn]] static void no_height(const BodyCase& body, const Vector<Dim>& x) {
+    const Raster& raster = *body.region.raster_without_value(x);
+    const auto [low, high] = raster.extent();
+    throw CaseError(body.place,
+                    fmt::format("the raster '{}' has no height at ({:g}, {:g}) m, where this body of '{}' may have "
+                                "material: it reaches from ({:g}, {:g}) m to ({:g}, {:g}) m, less what is NODATA; "
+                                "confine the body to where there are heights, for example with a box",
+                                raster.file(), x[0], x[1], body.material, low[0], low[1], high[0], high[1]));
   }
 
   void contest(Claim& holder, const Claim& claim) const {

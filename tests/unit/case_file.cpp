@@ -204,7 +204,8 @@ TEST(CaseFile, WrongBodies) {
                          "particles_per_cell: 5, box: {min: [1 m, 0 m], max: [4 m, 3 m]}"),
             "c.yaml:6:42: particles_per_cell is 5; it must be n^2 in 2-D; nearest: 4 and 9");
   EXPECT_EQ(message_with(", box: {min: [1 m, 0 m], max: [4 m, 3 m]}", ""),
-            "c.yaml:6:5: body: it has no shape; give one or more of box, polygon, half_space, sphere");
+            "c.yaml:6:5: body: it has no shape; give one or more of box, polygon, half_space, circle, sphere, layer, "
+            "below_raster, above_raster, union, intersection, difference");
   EXPECT_EQ(message_with("min: [1 m, 0 m]", "min: [-12 m, 0 m]"),
             "c.yaml:6:5: the body of 'soil' reaches 12 m beyond the left face of the grid: it extends to x = -12 m, "
             "the grid ends "
