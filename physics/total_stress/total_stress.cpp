@@ -87,7 +87,7 @@ void TotalStress<Dim>::step(Scene<Dim>& scene, double dt) {
   activate_blocks(scene);
   stress_.begin_step(scene);
   pressed_.begin_step(scene);
-  if (rough_under_load(scene)) wall_.resize(scene.blocks, scene.shape->degree());
+  if (rough_under_load(scene)) wall_.resize(scene.blocks, scene.shape->reach());
   switch (stress_.timing()) {
     case StressTiming::usf:
       step_usf(scene, dt);
