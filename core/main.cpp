@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -32,17 +33,16 @@ struct Arguments {
   std::string case_file, output, list_kind, results;
   std::vector<std::string> sets, fields;
   std::vector<double> times;
-  int threads = 0;
+  int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   bool resume = false, force = false, quiet = false, animation = false, json = false;
 };
 
 void use_threads(int asked) {
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  if (asked < 0) throw CaseError("--threads: expected a positive number");
   if (asked > cores)
     fmt::print(stderr, "warning: {} threads on {} core{} are slower than --threads {}\n", asked, cores,
                cores == 1 ? "" : "s", cores);
-  set_thread_count(asked == 0 ? cores : asked);
+  set_thread_count(asked);
 }
 
 /// Fields and times that are not asked for are those of the case.
@@ -101,11 +101,22 @@ int schema(const Arguments& arguments) {
   return exit_code::done;
 }
 
+constexpr int most_threads = 1024;
+
+/// What is wrong with the word after --threads; "" if nothing is.
+std::string trouble_with_threads(const std::string& word) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (error == std::errc() && end == word.data() + word.size() && number >= 1 && number <= most_threads) return "";
+  return fmt::format("found '{}'; expected a whole number from 1 to {}; without the option all cores are used", word,
+                     most_threads);
+}
+
 void add_case_options(CLI::App& app, Arguments& arguments) {
   app.add_option("case", arguments.case_file, "The case file (YAML)")->required();
   app.add_option("--set", arguments.sets, "Override a value: KEY=VALUE, for example materials.core.cohesion=\"25 kPa\"")
       ->allow_extra_args(false);
-  app.add_option("--threads", arguments.threads, "Number of threads (default: all cores)");
+  app.add_option("--threads", arguments.threads, "Number of threads (default: all cores)")->check(trouble_with_threads);
 }
 
 /// What CLI11 found wrong with the command line, with the commands where that is the trouble.

@@ -49,10 +49,12 @@ struct SchemeCase {
   std::string shape = "quadratic_bspline";
   std::string transfer = "apic";
   double flip_fraction = 1;  ///< share of FLIP in the FLIP/PIC blend; 1 is pure FLIP, 0 is pure PIC
+  int xpic_order = 2;        ///< of XPIC: mappings to the nodes in a step; 1 is PIC
   std::string stress_update = "usl";
   std::string strain = "jaumann";         ///< how stress follows large strain: jaumann or hencky
   bool f_bar = false;                     ///< volumetric strain increments averaged over cells
   std::optional<double> fixed_time_step;  ///< [s]; absent: computed every step
+  Place time_step_place;                  ///< where `time_step` stands in the case file
   double courant = 0.5;                   ///< wave limit: courant * h / (c + |v|)
   double advection = 0.2;                 ///< advection limit: share of a cell that a particle crosses in one step
   double strain_per_step = 0.05;          ///< strain limit: largest strain increment in one step

@@ -330,6 +330,7 @@ void read_time_step(SchemeCase& scheme, const Node& node, Problems& problems) {
     value::word(node, "time_step", {"computed"}, problems);
     return;
   }
+  scheme.time_step_place = node.place;
   scheme.fixed_time_step = value::quantity(node, "time_step", unit::time, above(0), problems);
 }
 
@@ -343,6 +344,10 @@ Schema<SchemeCase> scheme_schema() {
       .quantity("flip_fraction", &S::flip_fraction, unit::none, from_to(0, 1),
                 "Share of FLIP in the FLIP/PIC blend of `transfer: flip`; 1 is pure FLIP, 0 is pure PIC.",
                 defaults.flip_fraction)
+      .integer("xpic_order", &S::xpic_order, from_to(1, 20),
+               "Order m of `transfer: xpic`: a step maps velocities m - 1 times more; 1 is PIC, many are FLIP without "
+               "what the grid cannot see.",
+               defaults.xpic_order)
       .word("stress_update", &S::stress_update, {"usf", "usl", "musl"},
             "When the stress is updated: first in the step, last, or last with velocities mapped a second time.",
             defaults.stress_update)

@@ -83,7 +83,7 @@ void for_neighbourhood(const Visit& visit) {
 }  // namespace
 
 template <int Dim>
-void Blocks<Dim>::sort(Particles& particles, const GridGeometry<Dim>& grid, int degree) {
+void Blocks<Dim>::sort(Particles& particles, const GridGeometry<Dim>& grid, int reach) {
   const std::size_t count = particles.size();
   const Numbering<Dim> numbering(grid);
   const Addresses<Dim> address_of(particles, grid, numbering);
@@ -132,13 +132,13 @@ void Blocks<Dim>::sort(Particles& particles, const GridGeometry<Dim>& grid, int 
     block.last_batch = static_cast<std::uint32_t>(batches_.size());
     particle_blocks_.push_back(block);
   }
-  connect(grid, degree);
+  connect(grid, reach);
 }
 
 template <int Dim>
-void Blocks<Dim>::connect(const GridGeometry<Dim>& grid, int degree) {
+void Blocks<Dim>::connect(const GridGeometry<Dim>& grid, int reach) {
   constexpr int width = block_width<Dim>;
-  const int tile = tile_width<Dim>(degree);
+  const int tile = tile_width<Dim>(reach);
   const Numbering<Dim> numbering(grid);
   std::map<std::int64_t, std::int32_t> slot;  // ordered, so that node blocks are numbered as particle blocks are
   const auto shifted = [](const ParticleBlock<Dim>& block, const Index<Dim>& shift) {
@@ -210,7 +210,7 @@ std::vector<std::int64_t> Blocks<Dim>::record() const {
 
 template <int Dim>
 void Blocks<Dim>::restore(const std::vector<std::int64_t>& record, const Particles& particles,
-                          const GridGeometry<Dim>& grid, int degree) {
+                          const GridGeometry<Dim>& grid, int reach) {
   particle_blocks_.clear();
   batches_.clear();
   std::uint32_t p = 0;
@@ -228,7 +228,7 @@ void Blocks<Dim>::restore(const std::vector<std::int64_t>& record, const Particl
     block.last_batch = static_cast<std::uint32_t>(batches_.size());
     particle_blocks_.push_back(block);
   }
-  connect(grid, degree);
+  connect(grid, reach);
 }
 
 template class Blocks<2>;

@@ -40,8 +40,8 @@ struct NodeBlock {
 template <int Dim>
 class Blocks {
  public:
-  /// Sorts the particles and finds the active blocks. `degree` is that of the shape functions.
-  void sort(Particles& particles, const GridGeometry<Dim>& grid, int degree);
+  /// Sorts the particles and finds the active blocks. `reach` is that of the shape functions.
+  void sort(Particles& particles, const GridGeometry<Dim>& grid, int reach);
 
   /// Forgets all blocks, when the particles have changed otherwise than by moving: the next step sorts.
   void clear() { particle_blocks_.clear(), node_blocks_.clear(), batches_.clear(); }
@@ -60,10 +60,10 @@ class Blocks {
   /// keeps it.
   std::vector<std::int64_t> record() const;
   void restore(const std::vector<std::int64_t>& record, const Particles& particles, const GridGeometry<Dim>& grid,
-               int degree);
+               int reach);
 
  private:
-  void connect(const GridGeometry<Dim>& grid, int degree);
+  void connect(const GridGeometry<Dim>& grid, int reach);
   void note_needs();
   static std::size_t ready(const std::vector<std::size_t>& needed, std::size_t done);
 

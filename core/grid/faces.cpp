@@ -11,14 +11,15 @@ std::vector<std::string> face_names(int dimension) {
 }
 
 template <int Dim>
-Faces<Dim>::Faces(const std::map<std::string, FaceCase>& faces, const GridGeometry<Dim>& grid, int degree) {
+Faces<Dim>::Faces(const std::map<std::string, FaceCase>& faces, const GridGeometry<Dim>& grid, int reach, int outside)
+    : first_node_(outside) {
   const auto names = face_names(Dim);
   for (const auto& [name, face] : faces) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) throw CaseError("the grid has no face called '" + name + "'");
     face_[static_cast<std::size_t>(found - names.begin())] = face;
   }
-  for (int a = 0; a < Dim; ++a) last_node_[a] = grid.cells[a] + degree - 1;
+  for (int a = 0; a < Dim; ++a) last_node_[a] = grid.cells[a] + reach - 1 - outside;
 }
 
 namespace {

@@ -18,8 +18,9 @@ std::vector<std::string> face_names(int dimension);
 template <int Dim>
 class Faces {
  public:
-  /// Throws CaseError for a face that this dimension does not have.
-  Faces(const std::map<std::string, FaceCase>& faces, const GridGeometry<Dim>& grid, int degree);
+  /// Throws CaseError for a face that this dimension does not have. `reach` and `outside` are those of the shape
+  /// functions.
+  Faces(const std::map<std::string, FaceCase>& faces, const GridGeometry<Dim>& grid, int reach, int outside = 0);
 
   /// Velocities that are given whatever the forces are: normal fixed, tangential fixed. Acts on the motion of a node
   /// block; the change is added to dv as well.
@@ -35,13 +36,16 @@ class Faces {
   bool any_friction() const;
 
   const FaceCase& face(int axis, int side) const { return face_[static_cast<std::size_t>(2 * axis + side)]; }
-  /// The node on the wall: 0 or the last one.
-  int wall_node(int axis, int side) const { return side == 0 ? 0 : last_node_[static_cast<std::size_t>(axis)]; }
+  /// The node on the wall.
+  int wall_node(int axis, int side) const {
+    return side == 0 ? first_node_ : last_node_[static_cast<std::size_t>(axis)];
+  }
 
  private:
   void impose(const NodeBlock<Dim>& nodes, Lane* motion, bool friction, const Lane* relief) const;
 
   std::array<FaceCase, 2 * Dim> face_{};
+  int first_node_;
   Index<Dim> last_node_{};
 };
 

@@ -26,14 +26,14 @@ inline constexpr int neighbourhood = power(3, Dim);
 /// Cells beyond its block that a particle may wander into before the particles are sorted again.
 inline constexpr int tile_margin = 1;
 
-/// Nodes per axis of the tile of a block: all nodes that its particles can reach, for shape functions of this degree.
+/// Nodes per axis of the tile of a block: all nodes that its particles can reach, for shape functions with this reach.
 template <int Dim>
-constexpr int tile_width(int degree) {
-  return block_width<Dim> + 2 * tile_margin + degree;
+constexpr int tile_width(int reach) {
+  return block_width<Dim> + 2 * tile_margin + reach;
 }
 
-/// The grid of a scene. Cells are half-open, [x_i, x_{i+1}). With shape functions of degree p an axis of n cells has
-/// n + p nodes (control points); cell i reaches nodes i … i + p.
+/// The grid of a scene. Cells are half-open, [x_i, x_{i+1}). With shape functions of reach r an axis of n cells has
+/// n + r nodes (control points); cell i reaches nodes i … i + r.
 template <int Dim>
 struct GridGeometry {
   Vector<Dim> min{}, max{}, cell{};

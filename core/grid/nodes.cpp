@@ -18,8 +18,8 @@ void LaneArray::resize(std::size_t count) {
 }
 
 template <int Dim>
-void NodeFields<Dim>::resize(const Blocks<Dim>& blocks, int degree) {
-  tile_width_ = tile_width<Dim>(degree);
+void NodeFields<Dim>::resize(const Blocks<Dim>& blocks, int reach) {
+  tile_width_ = tile_width<Dim>(reach);
   tile_size_ = static_cast<std::size_t>(power(tile_width_, Dim));
   const std::size_t nodes = blocks.node_blocks().size() * block_nodes<Dim>;
   momentum_.resize(nodes);

@@ -35,7 +35,7 @@ template <int Dim>
 class NodeFields {
  public:
   /// Makes room for the active blocks; the contents are undefined until the first collect.
-  void resize(const Blocks<Dim>& blocks, int degree);
+  void resize(const Blocks<Dim>& blocks, int reach);
 
   /// {m, m vx, m vy, (m vz)} [kg, kg m/s]
   Lane* momentum(std::size_t node_block) { return momentum_.data() + node_block * block_nodes<Dim>; }

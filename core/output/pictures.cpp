@@ -39,6 +39,12 @@ std::vector<std::string> arguments_of(const PictureRequest& request) {
   return words;
 }
 
+/// Of the word number `i` of output.pictures, which may be a list or one word alone.
+Place place_of_picture(const Case& definition, std::size_t i) {
+  const Node& pictures = *definition.source.find("output")->find("pictures");
+  return pictures.kind == Node::Kind::list ? pictures.items.at(i).place : pictures.place;
+}
+
 }  // namespace
 
 void require_pictured_fields(const Case& definition, const Particles& particles) {
@@ -47,8 +53,8 @@ void require_pictured_fields(const Case& definition, const Particles& particles)
   for (std::size_t i = 0; i < definition.output.pictures.size(); ++i) {
     const std::string& name = definition.output.pictures[i];
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    throw CaseError(definition.source.find("output")->find("pictures")->items.at(i).place,
-                    fmt::format("pictures: unknown field '{}'; {}", name, allowed_words(name, names)));
+    throw CaseError(place_of_picture(definition, i),
+                    fmt::format("pictures: unknown field '{}'; {}; `[]` draws none", name, allowed_words(name, names)));
   }
 }
 

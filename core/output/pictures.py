@@ -279,7 +279,7 @@ def draw_field(results, view, name, frames, path):
         axis.spines[["top", "right"]].set_visible(False)
         axis.set_title(f"t = {results.times[frame]:.4g} s", loc="left", fontsize=9, fontweight="bold", pad=3)
     for axis in panels[:, 0]:
-        axis.set_ylabel("z [m]")
+        axis.set_ylabel(f"{'xyz'[view.axes[1]]} [m]")
     for axis in axes[-columns:]:
         axis.set_xlabel("x [m]")
         axis.tick_params(labelbottom=True)

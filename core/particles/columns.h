@@ -52,6 +52,7 @@ class Columns {
   std::span<const double> values(ColumnId id, int component = 0) const { return {data(id, component), size_}; }
 
   const std::vector<ColumnSpec>& specs() const { return specs_; }
+  const ColumnSpec& spec(ColumnId id) const { return specs_[static_cast<std::size_t>(id.index)]; }
   /// Throws std::out_of_range if no column has this name.
   ColumnId find(const std::string& name) const;
   bool contains(const std::string& name) const;

@@ -34,9 +34,22 @@ double seconds_since(SteadyClock::time_point start) {
   return std::chrono::duration<double>(SteadyClock::now() - start).count();
 }
 
+/// Refuses a path on which a file stands where a folder is wanted.
+void check_path(const fs::path& folder) {
+  fs::path part;
+  for (const auto& name : folder) {
+    part /= name;
+    std::error_code unreadable;  // is left to make_folder
+    if (fs::exists(part, unreadable) && !fs::is_directory(part, unreadable))
+      throw CaseError(fmt::format("the output folder {} cannot be made: {} is a file; take another --output",
+                                  folder.string(), part.string()));
+  }
+}
+
 /// Refuses to touch a folder that holds results, before anything is computed. The folder is made when the case has
 /// proved sound.
 void check_folder(const RunOptions& options) {
+  check_path(options.folder);
   if (options.resume) {
     if (!fs::is_directory(options.folder))
       throw CaseError(fmt::format("--resume: there is no folder {}", options.folder.string()));
@@ -52,9 +65,8 @@ void check_folder(const RunOptions& options) {
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder))
-    throw std::runtime_error(fmt::format("the output folder {} cannot be made: {}", folder.string(),
-                                         error ? error.message() : "there is a file of this name"));
+  if (error)
+    throw std::runtime_error(fmt::format("the output folder {} cannot be made: {}", folder.string(), error.message()));
 }
 
 std::string text_of(const std::string& file) {

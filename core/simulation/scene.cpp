@@ -25,18 +25,34 @@ Scene<Dim>::Scene(const Case& definition)
       shape(shape_registry<Dim>().find(definition.scheme.shape, definition.source.place)()),
       transfer(transfer_registry().find(definition.scheme.transfer, definition.source.place)),
       scheme(definition.scheme),
-      faces(definition.faces, grid, shape->degree()),
+      faces(definition.faces, grid, shape->reach(), shape->outside()),
       particles(Dim) {
   for (std::size_t a = 0; a < Dim; ++a) gravity[a] = definition.gravity.empty() ? 0 : definition.gravity[a];
   if (transfer.affine)
     affine = particles.columns.declare({"affine_velocity", "1/s", Dim * Dim, Role::state,
-                                        "Affine velocity field of APIC, row by row: component, direction.", false});
+                                        "Affine velocity field, row by row: component, direction.", false});
+  if (const ColumnSpec spec = shape->domain(); spec.components > 0) domain = particles.columns.declare(spec);
+}
+
+/// Bodies are filled with lattices that divide cells evenly, so that volumes tell the spacing.
+template <int Dim>
+void Scene<Dim>::initialise_domains() {
+  const int components = domain_components();
+  if (components == 0) return;
+  std::array<double, domain_capacity<Dim>> numbers{};
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const double volume = particles.columns.data(particles.volume)[p] / grid.cell_volume();
+    shape->fill_domain(grid, 1 / std::round(std::pow(volume, -1.0 / Dim)), numbers);
+    for (int c = 0; c < components; ++c) particles.columns.data(domain, c)[p] = numbers[static_cast<std::size_t>(c)];
+  }
 }
 
 template <int Dim>
 BlockParticles<Dim> Scene<Dim>::view(const ParticleBlock<Dim>& block) const {
   BlockParticles<Dim> view{&grid, block.first_cell, block.begin, block.end, {}};
   for (int a = 0; a < Dim; ++a) view.position[a] = particles.columns.data(particles.position, a);
+  const int components = domain_components();
+  for (int c = 0; c < components; ++c) view.domain[static_cast<std::size_t>(c)] = particles.columns.data(domain, c);
   return view;
 }
 

@@ -28,6 +28,7 @@ struct Scene {
   Faces<Dim> faces;
   Particles particles;
   ColumnId affine;  ///< C of APIC [1/s], declared when the transfer is affine
+  ColumnId domain;  ///< what part of space a particle stands for; declared when the shape functions ask for it
   Blocks<Dim> blocks;
   NodeFields<Dim> nodes;
 
@@ -38,8 +39,13 @@ struct Scene {
   double travelled = 0;    ///< most cells that a particle may have crossed since the last sort
   StageClock clock;
 
+  int domain_components() const { return domain.index < 0 ? 0 : particles.columns.spec(domain).components; }
+
   /// Time over which velocities change in a step of length dt: they live at the middle of steps (leap-frog).
   double kick(double dt) const { return 0.5 * (previous_dt + dt); }
+
+  /// Called once, when all bodies are filled: the domains of the particles.
+  void initialise_domains();
 
   BlockParticles<Dim> view(const ParticleBlock<Dim>& block) const;
   /// The affine columns are null when the transfer is not affine.

@@ -22,6 +22,7 @@ class SimulationOf final : public Simulation {
     module_->declare(scene_.particles);
     fill_bodies<Dim>(
         definition, scene_.grid, [&](int m) { return module_->density(m); }, scene_.particles);
+    scene_.initialise_domains();
     module_->initialise(scene_);
     scene_.motion.largest_speed_squared = largest_speed_squared();
   }
@@ -76,8 +77,8 @@ class SimulationOf final : public Simulation {
 
   void restore(const Archive& archive) override {
     restore_particles(archive, scene_.particles);
-    scene_.blocks.restore(archive.integers.at("blocks"), scene_.particles, scene_.grid, scene_.shape->degree());
-    scene_.nodes.resize(scene_.blocks, scene_.shape->degree());
+    scene_.blocks.restore(archive.integers.at("blocks"), scene_.particles, scene_.grid, scene_.shape->reach());
+    scene_.nodes.resize(scene_.blocks, scene_.shape->reach());
     const auto& step = archive.integers.at("step");
     scene_.step = step[0];
     removed_ = static_cast<std::size_t>(step[1]);

@@ -8,8 +8,8 @@ template <int Dim>
 bool activate_blocks(Scene<Dim>& scene) {
   if (!scene.blocks.particle_blocks().empty() && scene.travelled < travel_allowance) return false;
   const auto timing = scene.clock.time(Stage::sort);
-  scene.blocks.sort(scene.particles, scene.grid, scene.shape->degree());
-  scene.nodes.resize(scene.blocks, scene.shape->degree());
+  scene.blocks.sort(scene.particles, scene.grid, scene.shape->reach());
+  scene.nodes.resize(scene.blocks, scene.shape->reach());
   scene.travelled = 0;
   return true;
 }
@@ -90,13 +90,17 @@ double lightest_node(const Scene<Dim>& scene) {
 }  // namespace
 
 template <int Dim>
+void divide_by_mass(const NodeBlock<Dim>& nodes, const Lane* momentum, Lane* motion) {
+  accelerate<Dim>(nodes, momentum, nullptr, 0, {}, 0, motion);
+}
+
+template <int Dim>
 void velocity_from_momentum(Scene<Dim>& scene, Items some) {
   const auto timing = scene.clock.time(Stage::nodes);
-  const double lightest = lightest_node(scene);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
     scene.nodes.collect_momentum(scene.blocks, b);
-    accelerate<Dim>(block, scene.nodes.momentum(b), nullptr, 0, scene.gravity, lightest, scene.nodes.motion(b));
+    divide_by_mass<Dim>(block, scene.nodes.momentum(b), scene.nodes.motion(b));
     scene.faces.fix(block, scene.nodes.motion(b));
   });
 }
@@ -153,28 +157,42 @@ void prepare(const Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces) {
   }
 }
 
+namespace {
+
+/// XPIC: the stages of VelocityFilter have put what PIC would lose into the place of the nodes' change.
+template <int Dim>
+VelocityShares velocity_shares(const Scene<Dim>& scene) {
+  const double flip = scene.scheme.flip_fraction;
+  if (!scene.transfer.filtered) return {flip, flip, 1 - flip};
+  return {0, scene.scheme.xpic_order > 1 ? 1.0 : 0.0, 1};
+}
+
+}  // namespace
+
 template <int Dim>
 MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_column) {
   Columns& columns = scene.particles.columns;
   MotionUpdate<Dim> update{};
   update.dt = dt;
-  update.flip_fraction = scene.scheme.flip_fraction;
+  update.shares = velocity_shares(scene);
   for (int a = 0; a < Dim; ++a) {
     update.velocity[a] = columns.data(scene.particles.velocity, a);
     update.position[a] = columns.data(position_column, a);
   }
+  update.affine_is_gradient = scene.transfer.gradient;
   if (scene.transfer.affine)
     for (int c = 0; c < Dim * Dim; ++c) update.affine[c] = columns.data(scene.affine, c);
   return update;
 }
 
-#define SLUICE_INSTANTIATE(Dim)                                                \
-  template bool activate_blocks<Dim>(Scene<Dim>&);                             \
-  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);         \
-  template void velocity_from_momentum<Dim>(Scene<Dim>&, Items);               \
-  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items);    \
-  template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*, Items);     \
-  template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&); \
+#define SLUICE_INSTANTIATE(Dim)                                                   \
+  template bool activate_blocks<Dim>(Scene<Dim>&);                                \
+  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);            \
+  template void divide_by_mass<Dim>(const NodeBlock<Dim>&, const Lane*, Lane*);   \
+  template void velocity_from_momentum<Dim>(Scene<Dim>&, Items);                  \
+  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items);       \
+  template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*, Items); \
+  template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&);    \
   template MotionUpdate<Dim> motion_update<Dim>(Scene<Dim>&, double, ColumnId);
 SLUICE_INSTANTIATE(2)
 SLUICE_INSTANTIATE(3)

@@ -30,6 +30,10 @@ bool activate_blocks(Scene<Dim>& scene);
 template <int Dim>
 void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt = 0, Items some = everything);
 
+/// v = p / m on one block, dv = 0.
+template <int Dim>
+void divide_by_mass(const NodeBlock<Dim>& nodes, const Lane* momentum, Lane* motion);
+
 /// Sums the tiles and divides: v = p / m, with the velocities that faces fix, eq. (17).
 template <int Dim>
 void velocity_from_momentum(Scene<Dim>& scene, Items some = everything);

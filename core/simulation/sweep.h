@@ -12,9 +12,9 @@ namespace sluice {
 
 /// A list of stages over the blocks of particles or of nodes. `run` leads the first stage over the grid some blocks at
 /// a time, and lets each stage follow the one before as far as the blocks around are done. A stage may hence read what
-/// the stages before it wrote on the same and on neighbouring blocks, and must not change what they read there: each
-/// block then finds what it would find if every stage had gone over the whole grid, and results are the same bit for
-/// bit.
+/// the stages before it wrote on the same and on neighbouring blocks (after a stage over nodes, another one over nodes
+/// on the same block only), and must not change what they read there: each block then finds what it would find if every
+/// stage had gone over the whole grid, and results are the same bit for bit.
 template <int Dim>
 class Sweep {
  public:
@@ -30,7 +30,8 @@ class Sweep {
   static constexpr std::size_t usual_pace = 96;
   /// So few blocks, some 5 MiB of tiles and particles for each of two threads, are done at one go.
   static constexpr std::size_t few_blocks = 512;
-  void run(std::size_t blocks_per_thread = usual_pace) const;
+  void run(std::size_t blocks_per_thread) const;
+  void run() const;
 
  private:
   struct Entry {

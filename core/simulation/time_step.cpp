@@ -35,6 +35,7 @@ TimeStepLimit fixed_step(const PhysicsModule<Dim>& module, const Scene<Dim>& sce
   const TimeStepLimit limit = smallest(module.hard_limits(scene));
   if (dt > limit.seconds)
     throw CaseError(
+        scene.scheme.time_step_place,
         fmt::format("scheme.time_step of {:g} s exceeds the {} limit of {:.4g} s at time {:g} s (step {}); take a "
                     "smaller one, or `time_step: computed`",
                     dt, limit.name, limit.seconds, scene.time, scene.step));

@@ -18,10 +18,29 @@ inline constexpr int chunk_size = 64;
 
 namespace kernel {
 
+/// Where a point is on an axis, in cells, for the shape functions: from the lower edge of the cell in which its lower
+/// end is. A point without a size is its own lower end.
+struct AxisPlace {
+  double low;    ///< of its lower end, in [0, 1)
+  double half;   ///< half of its size; 0 for shape functions that take particles as points
+  double below;  ///< cells between this cell and the lower wall
+  double above;  ///< and the upper wall
+};
+
+/// APIC's weights N_i (x_i - x) / sum_j N_j (x_j - x)^2, in 1/cells, from values and distances. Good to round-off where
+/// the values are: near a wall numerator and sum go to zero together.
+template <int Nodes>
+SLUICE_ALWAYS_INLINE void moment_weights(const double* value, const double* distance, double* weight) {
+  double sum = 0;
+  for (int i = 0; i < Nodes; ++i) sum += value[i] * distance[i] * distance[i];
+  const double inverse = 1 / sum;
+  for (int i = 0; i < Nodes; ++i) weight[i] = value[i] * distance[i] * inverse;
+}
+
 /// Shape functions of a chunk of particles, by axis and node, and where in the tile each particle's first node is.
 template <int Dim, class Shape>
 struct ChunkWeights {
-  static constexpr int nodes = Shape::degree + 1;
+  static constexpr int nodes = Shape::nodes;
   alignas(64) double value[Dim][nodes][chunk_size];
   alignas(64) double slope[Dim][nodes][chunk_size];     ///< [1/m]
   alignas(64) double distance[Dim][nodes][chunk_size];  ///< x_i - x [m]
@@ -30,7 +49,7 @@ struct ChunkWeights {
 };
 
 template <int Dim, class Shape>
-inline constexpr int tile_row = tile_width<Dim>(Shape::degree);
+inline constexpr int tile_row = tile_width<Dim>(Shape::reach);
 
 /// Distance in the tile between nodes that are neighbours along an axis.
 template <int Dim, class Shape>
@@ -38,30 +57,49 @@ constexpr int tile_stride(int axis) {
   return power(tile_row<Dim, Shape>, axis);
 }
 
+/// The same for a particle of half size `half` [cells] at `s` cells from the lower wall. Close to a wall it shrinks so
+/// as to end there: values then sum to one and reproduce linear fields up to the wall.
+template <class Shape>
+SLUICE_ALWAYS_INLINE AxisPlace place_of_sized(double s, double half, double last_cell, double* cell) {
+  const double end = last_cell + 1, raised = s > Shape::hair ? s : Shape::hair;
+  const double centre = raised < end - Shape::hair ? raised : end - Shape::hair;
+  const double below = centre < half ? centre : half, size = end - centre < below ? end - centre : below;
+  const double lowest = centre - size, floor = std::floor(lowest);
+  *cell = floor < last_cell ? floor : last_cell;
+  return {lowest - *cell, size, *cell, last_cell - *cell};
+}
+
 /// The shape functions of one axis. Written over plain pointers and without calls, or the compiler will not vectorize
 /// it.
-template <class Shape, bool Distances, bool AffineWeights, int Nodes = Shape::degree + 1>
-SLUICE_ALWAYS_INLINE void weigh_axis(const double* __restrict x, int count, double low, double h, double last_cell,
-                                     double (*__restrict values)[chunk_size], double (*__restrict slopes)[chunk_size],
+template <class Shape, bool Distances, bool AffineWeights, int Nodes = Shape::nodes>
+SLUICE_ALWAYS_INLINE void weigh_axis(const double* __restrict x, const double* __restrict half, int count, double low,
+                                     double h, double last_cell, double (*__restrict values)[chunk_size],
+                                     double (*__restrict slopes)[chunk_size],
                                      double (*__restrict distances)[chunk_size],
                                      double (*__restrict affines)[chunk_size], double* __restrict cells) {
   const double inverse = 1 / h;
 #pragma GCC ivdep
   for (int p = 0; p < count; ++p) {
     const double s = (x[p] - low) * inverse;
-    const double floor = std::floor(s), positive = floor > 0 ? floor : 0;
-    // A point on the upper face of the grid counts to the last cell.
-    const double cell = positive < last_cell ? positive : last_cell, in_cell = s - cell;
-    const double above = in_cell > Shape::hair ? in_cell : Shape::hair;
-    const double t = above < 1 - Shape::hair ? above : 1 - Shape::hair;
-    const double first = cell == 0 ? 1.0 : 0.0, last = cell == last_cell ? 1.0 : 0.0;
-    double value[Nodes], slope[Nodes], offset[Nodes], weight[Nodes];
-    Shape::evaluate(t, first, last, value, slope, offset);
-    if constexpr (AffineWeights) Shape::affine(t, first, last, weight);
+    double cell;
+    AxisPlace at;
+    if constexpr (Shape::sized) {
+      at = place_of_sized<Shape>(s, half[p], last_cell, &cell);
+    } else {
+      const double floor = std::floor(s), positive = floor > 0 ? floor : 0;
+      // A point on the upper face of the grid counts to the last cell.
+      cell = positive < last_cell ? positive : last_cell;
+      const double in_cell = s - cell;
+      const double raised = in_cell > Shape::hair ? in_cell : Shape::hair;
+      at = {raised < 1 - Shape::hair ? raised : 1 - Shape::hair, 0, cell, last_cell - cell};
+    }
+    double value[Nodes], slope[Nodes], distance[Nodes], weight[Nodes];
+    Shape::evaluate(at, value, slope, distance);
+    if constexpr (AffineWeights) Shape::affine(at, value, distance, weight);
     for (int i = 0; i < Nodes; ++i) {
       values[i][p] = value[i];
       slopes[i][p] = slope[i] * inverse;
-      if constexpr (Distances) distances[i][p] = (offset[i] - t) * h;
+      if constexpr (Distances) distances[i][p] = distance[i] * h;
       if constexpr (AffineWeights) affines[i][p] = weight[i] * inverse;
     }
     cells[p] = cell;
@@ -73,11 +111,12 @@ SLUICE_ALWAYS_INLINE void weigh(const BlockParticles<Dim>& block, std::uint32_t 
                                 ChunkWeights<Dim, Shape>& w) {
   alignas(64) double cells[Dim][chunk_size];
   for (int a = 0; a < Dim; ++a)
-    weigh_axis<Shape, Distances, AffineWeights>(block.position[a] + begin, count, block.grid->min[a],
-                                                block.grid->cell[a], block.grid->cells[a] - 1, w.value[a], w.slope[a],
-                                                w.distance[a], w.affine[a], cells[a]);
+    weigh_axis<Shape, Distances, AffineWeights>(
+        block.position[a] + begin, Shape::sized ? block.domain[0] + begin : nullptr, count, block.grid->min[a],
+        block.grid->cell[a], block.grid->cells[a] - 1, w.value[a], w.slope[a], w.distance[a], w.affine[a], cells[a]);
   int origin = 0;
-  for (int a = 0; a < Dim; ++a) origin += (block.first_cell[a] - tile_margin) * tile_stride<Dim, Shape>(a);
+  for (int a = 0; a < Dim; ++a)
+    origin += (block.first_cell[a] - tile_margin - Shape::outside) * tile_stride<Dim, Shape>(a);
   for (int p = 0; p < count; ++p) {
     int base = -origin;
     for (int a = 0; a < Dim; ++a) base += static_cast<std::int32_t>(cells[a][p]) * tile_stride<Dim, Shape>(a);
@@ -115,7 +154,7 @@ SLUICE_ALWAYS_INLINE Lane mass_and_momentum(double mass, const std::array<const 
 template <int Dim, class Shape, bool Affine, bool Flux>
 SLUICE_ALWAYS_INLINE void add_to_nodes(const ChunkWeights<Dim, Shape>& w, int p, Lane base, const Lane* slope,
                                        const Lane* flux, Lane* tile) {
-  constexpr int nodes = Shape::degree + 1;
+  constexpr int nodes = Shape::nodes;
   Lane* const origin = tile + w.base[p];
   for (int k = 0; k < (Dim == 3 ? nodes : 1); ++k) {
     Lane plane = base, plane_slope_x{}, plane_slope_y{}, plane_flux{}, plane_flux_x{}, plane_flux_y{};
@@ -217,7 +256,7 @@ struct Gathered {
 
 template <int Dim, class Shape, bool Value, bool Gradient, bool Affine>
 SLUICE_ALWAYS_INLINE Gathered<Dim> sum_nodes(const ChunkWeights<Dim, Shape>& w, int p, const Lane* motion_tile) {
-  constexpr int nodes = Shape::degree + 1, lanes = motion_lanes<Dim>;
+  constexpr int nodes = Shape::nodes, lanes = motion_lanes<Dim>;
   const Lane* const origin = motion_tile + w.base[p] * lanes;
   Gathered<Dim> sum{};
   for (int k = 0; k < (Dim == 3 ? nodes : 1); ++k) {
@@ -348,11 +387,15 @@ SLUICE_MULTITARGET double gather_strain(const BlockParticles<Dim>& block, const 
   return largest;
 }
 
+/// How the affine field of particles is gathered: not at all, as APIC's or as the gradient of the velocity (TPIC).
+enum class AffineField { none, moment, gradient };
+
 /// Velocity, position and affine field of a chunk; `begin` is the chunk's first particle.
 template <int Dim, bool Affine>
 SLUICE_ALWAYS_INLINE void move(const ChunkGathered<Dim>& g, const BlockParticles<Dim>& block, std::uint32_t begin,
                                int count, const MotionUpdate<Dim>& update, MotionReport& report) {
-  const double flip = update.flip_fraction, pic = 1 - flip, dt = update.dt;
+  const VelocityShares share = update.shares;
+  const double dt = update.dt;
   alignas(64) double speed_squared[chunk_size] = {};
   double travel = 0;
   int outside = 0;
@@ -368,7 +411,8 @@ SLUICE_ALWAYS_INLINE void move(const ChunkGathered<Dim>& g, const BlockParticles
     const double cells_per_metre = 1 / block.grid->cell[static_cast<std::size_t>(a)];
 #pragma omp simd reduction(max : travel) reduction(+ : outside)
     for (int p = 0; p < count; ++p) {
-      const double velocity = Affine ? nodes[4 * p] : flip * (v[p] + change[4 * p]) + pic * nodes[4 * p];
+      const double velocity =
+          Affine ? nodes[4 * p] : share.old * v[p] + share.change * change[4 * p] + share.nodes * nodes[4 * p];
       const double step = dt * nodes[4 * p];
       const double x_moved = x[p] + step;
       v[p] = velocity;
@@ -398,12 +442,10 @@ SLUICE_ALWAYS_INLINE void move(const ChunkGathered<Dim>& g, const BlockParticles
   report.inside = report.inside && outside == 0;
 }
 
-template <int Dim, class Shape, bool Affine, bool Strain>
+template <int Dim, class Shape, AffineField Field, bool Strain>
 SLUICE_MULTITARGET MotionReport gather_motion(const BlockParticles<Dim>& block, const Lane* motion_tile,
                                               const MotionUpdate<Dim>& update) {
-  // With linear functions APIC's affine field is the velocity gradient: gather it once.
-  constexpr bool affine_is_gradient = Affine && Shape::degree == 1;
-  constexpr bool own_affine = Affine && !affine_is_gradient;
+  constexpr bool affine_is_gradient = Field == AffineField::gradient, own_affine = Field == AffineField::moment;
   ChunkWeights<Dim, Shape> w;
   ChunkGathered<Dim> g;
   MotionReport report;
@@ -417,10 +459,29 @@ SLUICE_MULTITARGET MotionReport gather_motion(const BlockParticles<Dim>& block, 
     if constexpr (Strain)
       largest_strain =
           std::max(largest_strain, write_strain<Dim>(g, count, update.dt, begin - block.begin, *update.strain));
-    move<Dim, Affine>(g, block, begin, count, update, report);
+    move<Dim, Field != AffineField::none>(g, block, begin, count, update, report);
   }
   if constexpr (Strain) report.largest_strain_rate = largest_strain / update.dt;
   return report;
+}
+
+/// The velocities of the nodes to the particles and back: {m, m v}. What is lost on the way is what one mapping
+/// smooths.
+template <int Dim, class Shape>
+SLUICE_MULTITARGET void map_again(const BlockParticles<Dim>& block, const double* mass, const Lane* motion_tile,
+                                  Lane* tile) {
+  std::memset(static_cast<void*>(tile), 0, sizeof(Lane) * power(tile_row<Dim, Shape>, Dim));
+  ChunkWeights<Dim, Shape> w;
+  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
+    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
+    weigh<Dim, Shape, false, false>(block, begin, count, w);
+    for (int k = 0; k < count; ++k) {
+      const double m = mass[begin + static_cast<std::uint32_t>(k)];
+      const Lane v = sum_nodes<Dim, Shape, true, false, false>(w, k, motion_tile).value[0];
+      const Lane base = {m, m * v[0], m * v[1], Dim == 3 ? m * v[2] : 0};
+      add_to_nodes<Dim, Shape, false, false>(w, k, base, nullptr, nullptr, tile);
+    }
+  }
 }
 
 /// Writes component `component` of every lane of a chunk to a column.
@@ -454,7 +515,7 @@ SLUICE_ALWAYS_INLINE Lane divergence_weights(double value, double slope, int axi
 /// product a node and lane, because each component has slopes along its own axis only.
 template <int Dim, class Shape>
 SLUICE_ALWAYS_INLINE void sum_divergence(const ChunkWeights<Dim, Shape>& w, int p, const Lane* motion_tile, Lane* out) {
-  constexpr int nodes = Shape::degree + 1, lanes = motion_lanes<Dim>;
+  constexpr int nodes = Shape::nodes, lanes = motion_lanes<Dim>;
   const Lane* const origin = motion_tile + w.base[p] * lanes;
   Lane along_x[nodes], along_y[nodes], along_z[Dim == 3 ? nodes : 1];
   for (int i = 0; i < nodes; ++i) {
@@ -512,11 +573,26 @@ SLUICE_MULTITARGET void gather_divergence(const BlockParticles<Dim>& block, cons
 
 }  // namespace kernel
 
+/// What shape functions have in common that take particles as points. A shape is a struct of static members for one
+/// axis; several axes are products:
+///   nodes, reach, outside  nodes that a particle takes; ShapeKernels::reach and outside
+///   smooth, hair, negligible_weight  see ShapeKernels and linear.cpp
+///   evaluate(place, value, slope, distance)  N, dN/dx [1/cells], and the distances x_i - x of the nodes [cells]
+///   affine(place, value, distance, weight)   APIC's weights [1/cells]; moment_weights does, if nothing is shorter
+///   node_offset(i, n)  place of node i on an axis of n cells, in cells from the lower wall
+struct PointShape {
+  static constexpr bool sized = false;               ///< particles have a size, the first number of their domain
+  static constexpr bool moments_are_slopes = false;  ///< APIC's affine field is the gradient
+  static ColumnSpec domain(int) { return {"domain", "1", 0, Role::state, ""}; }
+};
+
 /// The kernels of one shape function; see ShapeKernels.
 template <int Dim, class Shape>
 class ShapeKernelsOf final : public ShapeKernels<Dim> {
  public:
-  int degree() const override { return Shape::degree; }
+  int reach() const override { return Shape::reach; }
+  int outside() const override { return Shape::outside; }
+  bool smooth() const override { return Shape::smooth; }
   double negligible_weight() const override { return Shape::negligible_weight; }
 
   double node_position(const GridGeometry<Dim>& grid, int axis, int i) const override {
@@ -524,13 +600,25 @@ class ShapeKernelsOf final : public ShapeKernels<Dim> {
     return grid.min[a] + grid.cell[a] * Shape::node_offset(i, grid.cells[a]);
   }
 
-  Stencil<Dim> stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x) const override {
-    constexpr int nodes = Shape::degree + 1;
-    const Index<Dim> cell = grid.cell_of(x);
-    double value[Dim][nodes], slope[Dim][nodes], offset[nodes];
+  ColumnSpec domain() const override { return Shape::domain(Dim); }
+  void fill_domain(const GridGeometry<Dim>&, double share, std::span<double> numbers) const override {
+    if constexpr (Shape::sized) numbers[0] = 0.5 * share;
+  }
+
+  Stencil<Dim> stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x,
+                       std::span<const double> domain) const override {
+    constexpr int nodes = Shape::nodes;
+    double value[Dim][nodes], slope[Dim][nodes], distance[nodes];
+    Index<Dim> cell = grid.cell_of(x);
     for (int a = 0; a < Dim; ++a) {
-      const double t = (x[a] - grid.min[a]) / grid.cell[a] - cell[a];
-      Shape::evaluate(t, cell[a] == 0, cell[a] == grid.cells[a] - 1, value[a], slope[a], offset);
+      const double s = (x[a] - grid.min[a]) / grid.cell[a], last_cell = grid.cells[a] - 1;
+      kernel::AxisPlace at{s - cell[a], 0, static_cast<double>(cell[a]), last_cell - cell[a]};
+      if constexpr (Shape::sized) {
+        double first;
+        at = kernel::place_of_sized<Shape>(s, domain[0], last_cell, &first);
+        cell[a] = static_cast<int>(first);
+      }
+      Shape::evaluate(at, value[a], slope[a], distance);
     }
     Stencil<Dim> s;
     for (int n = 0; n < power(nodes, Dim); ++n) {
@@ -539,12 +627,13 @@ class ShapeKernelsOf final : public ShapeKernels<Dim> {
       for (int a = 0, rest = n; a < Dim; ++a, rest /= nodes) i[a] = rest % nodes;
       s.value[place] = 1;
       for (int a = 0; a < Dim; ++a) {
-        s.node[place][a] = cell[a] + i[a];
+        s.node[place][a] = cell[a] + Shape::outside + i[a];
         s.value[place] *= value[a][i[a]];
         s.gradient[place][a] = slope[a][i[a]] / grid.cell[a];
         for (int b = 0; b < Dim; ++b)
           if (b != a) s.gradient[place][a] *= value[b][i[b]];
       }
+      if (Shape::sized && s.value[place] == 0) --s.count;  // beyond the end of the particle
     }
     return s;
   }
@@ -581,14 +670,26 @@ class ShapeKernelsOf final : public ShapeKernels<Dim> {
     kernel::gather_divergence<Dim, Shape>(particles, motion_tile, divergence, change);
   }
 
+  void map_again(const BlockParticles<Dim>& particles, const double* mass, const Lane* motion_tile,
+                 Lane* tile) const override {
+    kernel::map_again<Dim, Shape>(particles, mass, motion_tile, tile);
+  }
+
   MotionReport gather_motion(const BlockParticles<Dim>& particles, const Lane* motion_tile,
                              const MotionUpdate<Dim>& update) const override {
-    const bool affine = update.affine[0] != nullptr;
-    if (update.strain != nullptr)
-      return affine ? kernel::gather_motion<Dim, Shape, true, true>(particles, motion_tile, update)
-                    : kernel::gather_motion<Dim, Shape, false, true>(particles, motion_tile, update);
-    return affine ? kernel::gather_motion<Dim, Shape, true, false>(particles, motion_tile, update)
-                  : kernel::gather_motion<Dim, Shape, false, false>(particles, motion_tile, update);
+    using enum kernel::AffineField;
+    if (update.affine[0] == nullptr) return gather_motion_with<none>(particles, motion_tile, update);
+    if (update.affine_is_gradient || Shape::moments_are_slopes)
+      return gather_motion_with<gradient>(particles, motion_tile, update);
+    if constexpr (!Shape::moments_are_slopes) return gather_motion_with<moment>(particles, motion_tile, update);
+  }
+
+ private:
+  template <kernel::AffineField Field>
+  static MotionReport gather_motion_with(const BlockParticles<Dim>& particles, const Lane* motion_tile,
+                                         const MotionUpdate<Dim>& update) {
+    return update.strain != nullptr ? kernel::gather_motion<Dim, Shape, Field, true>(particles, motion_tile, update)
+                                    : kernel::gather_motion<Dim, Shape, Field, false>(particles, motion_tile, update);
   }
 };
 

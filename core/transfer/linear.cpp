@@ -4,8 +4,9 @@ namespace sluice {
 namespace shape {
 
 /// Piecewise linear shape functions on the cells: docs/theory.md, eq. (12).
-struct Linear {
-  static constexpr int degree = 1;
+struct Linear : PointShape {
+  static constexpr int nodes = 2, reach = 1, outside = 0;
+  static constexpr bool smooth = false;
   /// Transfers keep points this far inside the cell, in cells. A point on a node has no weight on the next one, whose
   /// velocity would then be unknown and the gradient wrong.
   static constexpr double hair = 1e-14;
@@ -13,18 +14,18 @@ struct Linear {
   /// holds but a hair would be noise.
   static constexpr double negligible_weight = 1e-11;
 
-  /// At t in [0, 1) of a cell: values N, slopes dN/dt, and offsets of the nodes from the cell's lower edge, in cells.
-  /// `first` and `last` are 1 in the first and last cell of the axis, else 0.
-  static SLUICE_ALWAYS_INLINE void evaluate(double t, double, double, double* value, double* slope, double* offset) {
+  static SLUICE_ALWAYS_INLINE void evaluate(const kernel::AxisPlace& at, double* value, double* slope,
+                                            double* distance) {
+    const double t = at.low;
     value[0] = 1 - t;
     value[1] = t;
     slope[0] = -1;
     slope[1] = 1;
-    offset[0] = 0;
-    offset[1] = 1;
+    distance[0] = -t;
+    distance[1] = 1 - t;
   }
-  /// APIC's weights N_i (x_i - x) / sum_j N_j (x_j - x)^2, in 1/cells: for linear functions these are the slopes.
-  static SLUICE_ALWAYS_INLINE void affine(double, double, double, double* weight) {
+  static constexpr bool moments_are_slopes = true;
+  static SLUICE_ALWAYS_INLINE void affine(const kernel::AxisPlace&, const double*, const double*, double* weight) {
     weight[0] = -1;
     weight[1] = 1;
   }

@@ -7,6 +7,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <span>
 
 #include "core/case/registry.h"
 #include "core/grid/blocks.h"
@@ -28,6 +29,10 @@ struct StrainIncrements {
   std::array<double*, spin_components<Dim>> rotation;
 };
 
+/// Most numbers that say what part of space a particle stands for: the corners of a cell, as vectors.
+template <int Dim>
+inline constexpr int domain_capacity = Dim* power(2, Dim);
+
 /// The particles of a block as the kernels see them; pointers are to whole columns.
 template <int Dim>
 struct BlockParticles {
@@ -35,6 +40,7 @@ struct BlockParticles {
   Index<Dim> first_cell;  ///< of the block
   std::uint32_t begin, end;
   std::array<const double*, Dim> position;
+  std::array<const double*, domain_capacity<Dim>> domain{};  ///< as many as ShapeKernels::domain has components
 };
 
 template <int Dim>
@@ -57,14 +63,21 @@ enum class ScatterWhat {
   momentum_and_impulse  ///< {m, m v + dt f} to one tile
 };
 
+/// Shares of a particle's new velocity: of its old velocity, and of the change and the velocity of its nodes. FLIP has
+/// (1, 1, 0), PIC (0, 0, 1).
+struct VelocityShares {
+  double old = 0, change = 0, nodes = 1;
+};
+
 /// How a particle's velocity follows from its nodes.
 template <int Dim>
 struct MotionUpdate {
   double dt;                                ///< length of the step [s]
-  double flip_fraction;                     ///< not used with an affine transfer
+  VelocityShares shares;                    ///< not used with an affine transfer, which takes that of the nodes
   std::array<double*, Dim> velocity;        ///< in and out
   std::array<double*, Dim> position;        ///< out: position + dt * velocity of the nodes
   std::array<double*, Dim * Dim> affine{};  ///< out: C of APIC; null without it
+  bool affine_is_gradient = false;          ///< C is the velocity gradient (TPIC)
   const StrainIncrements<Dim>* strain =
       nullptr;  ///< out, indexed from 0 at the block's first particle; null: not wanted
 };
@@ -100,10 +113,21 @@ class ShapeKernels {
  public:
   virtual ~ShapeKernels() = default;
 
-  virtual int degree() const = 0;  ///< cell i reaches nodes i … i + degree on each axis
+  virtual int reach() const = 0;    ///< a point in cell i reaches nodes i … i + reach on each axis
+  virtual int outside() const = 0;  ///< so many of the nodes of an axis lie beyond each wall
+  /// Slopes go to zero with the values: a node that holds but a hair of a particle is not accelerated without bounds.
+  virtual bool smooth() const = 0;
   /// A node with less than this share of a particle takes no force.
   virtual double negligible_weight() const = 0;
-  virtual Stencil<Dim> stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x) const = 0;
+
+  /// What says which part of space a particle stands for: a column of the particles; without components if shape
+  /// functions take particles as points.
+  virtual ColumnSpec domain() const { return {"domain", "1", 0, Role::state, ""}; }
+  /// Its numbers for a particle that fills `share` of the width of its cell on every axis.
+  virtual void fill_domain(const GridGeometry<Dim>& /*grid*/, double /*share*/, std::span<double> /*numbers*/) const {}
+
+  virtual Stencil<Dim> stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x,
+                               std::span<const double> domain = {}) const = 0;
   /// Position of node (control point) `i` of axis `axis` [m]: sum_i N_i(x) position_i = x.
   virtual double node_position(const GridGeometry<Dim>& grid, int axis, int i) const = 0;
 
@@ -119,6 +143,9 @@ class ShapeKernels {
   /// The divergence of the nodes' velocity [1/s] and the nodes' change of velocity [m/s] at the particles.
   virtual void gather_divergence(const BlockParticles<Dim>& particles, const Lane* motion_tile, double* divergence,
                                  const std::array<double*, Dim>& change) const = 0;
+  /// The velocity of the nodes to particles, and at once to nodes again: {m, m v} in `tile`.
+  virtual void map_again(const BlockParticles<Dim>& particles, const double* mass, const Lane* motion_tile,
+                         Lane* tile) const = 0;
   virtual MotionReport gather_motion(const BlockParticles<Dim>& particles, const Lane* motion_tile,
                                      const MotionUpdate<Dim>& update) const = 0;
 };

@@ -75,7 +75,11 @@ template <int Dim>
 Stencil<Dim> stencil_at(const Scene<Dim>& scene, std::size_t p) {
   Vector<Dim> x;
   for (int a = 0; a < Dim; ++a) x[a] = scene.particles.columns.data(scene.particles.position, a)[p];
-  return scene.shape->stencil(scene.grid, x);
+  std::array<double, domain_capacity<Dim>> domain{};
+  const auto components = static_cast<std::size_t>(scene.domain_components());
+  for (std::size_t c = 0; c < components; ++c)
+    domain[c] = scene.particles.columns.data(scene.domain, static_cast<int>(c))[p];
+  return scene.shape->stencil(scene.grid, x, {domain.data(), components});
 }
 
 template <int Dim>
@@ -95,15 +99,38 @@ class Assembly {
     Stencil<Dim> s;
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t p = order[k];
-      s = stencil_at(scene_, p);
-      if (k == begin) {
-        stiffness.setZero(s.count * Dim, s.count * Dim);
-        force.setZero(s.count * Dim);
+      const Stencil<Dim> own = stencil_at(scene_, p);
+      if (k == begin || !same_nodes(own, s)) {
+        if (k != begin) add_dense(s, stiffness, force);
+        stiffness.setZero(own.count * Dim, own.count * Dim);
+        force.setZero(own.count * Dim);
       }
+      s = own;
       const auto elasticity = materials_[static_cast<std::size_t>(ps.material[p])].elasticity();
       add_particle(s, elasticity, ps.columns.data(ps.volume)[p], ps.columns.data(ps.mass)[p], stiffness, force);
       add_loads(s, p, force);
     }
+    add_dense(s, stiffness, force);
+  }
+
+  Eigen::SparseMatrix<double> matrix() const {
+    Eigen::SparseMatrix<double> k(unknowns_.count(), unknowns_.count());
+    k.setFromTriplets(entries_.begin(), entries_.end());
+    return k;
+  }
+  Eigen::VectorXd force() const {
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(unknowns_.count());
+    for (const auto& [row, value] : forces_) f[row] += value;
+    return f;
+  }
+
+ private:
+  /// Particles of a cell share their nodes, unless shape functions move with them.
+  static bool same_nodes(const Stencil<Dim>& a, const Stencil<Dim>& b) {
+    return a.count == b.count && std::equal(a.node.begin(), a.node.begin() + a.count, b.node.begin());
+  }
+
+  void add_dense(const Stencil<Dim>& s, const Eigen::MatrixXd& stiffness, const Eigen::VectorXd& force) {
     std::vector<int> number(static_cast<std::size_t>(s.count) * Dim);
     for (int i = 0; i < s.count; ++i) {
       const auto own = unknowns_.of(s.node[static_cast<std::size_t>(i)]);
@@ -120,18 +147,6 @@ class Assembly {
     }
   }
 
-  Eigen::SparseMatrix<double> matrix() const {
-    Eigen::SparseMatrix<double> k(unknowns_.count(), unknowns_.count());
-    k.setFromTriplets(entries_.begin(), entries_.end());
-    return k;
-  }
-  Eigen::VectorXd force() const {
-    Eigen::VectorXd f = Eigen::VectorXd::Zero(unknowns_.count());
-    for (const auto& [row, value] : forces_) f[row] += value;
-    return f;
-  }
-
- private:
   /// K_ab += V (lambda g_a g_b^T + G g_b g_a^T + G (g_a . g_b) I),  f_a += m N_a g.
   void add_particle(const Stencil<Dim>& s, const IsotropicElasticity& e, double volume, double mass,
                     Eigen::MatrixXd& stiffness, Eigen::VectorXd& force) const {

@@ -57,17 +57,20 @@ void StressUpdate<Dim>::declare(Columns& particles, ColumnId inertia) {
 
 template <int Dim>
 void StressUpdate<Dim>::gather_motion(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
+  filter_.add(sweep, scene);
   sweep.over_particles([this, &scene, dt](Items some) { move(scene, dt, scene.particles.position, some); });
 }
 
 template <int Dim>
 void StressUpdate<Dim>::gather_motion_and_update(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
+  filter_.add(sweep, scene);
   sweep.over_particles([this, &scene, dt](Items some) { move_and_strain(scene, dt, some); });
   if (f_bar_) sweep.over_particles([this, &scene, dt](Items some) { apply_f_bar(scene, dt, {}, some); });
 }
 
 template <int Dim>
 void StressUpdate<Dim>::gather_motion_and_map_again(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
+  filter_.add(sweep, scene);
   sweep.over_particles([this, &scene, dt](Items some) { move(scene, dt, next_position_, some); });
   sweep.over_particles([&scene](Items some) { scatter(scene, ScatterWhat::momentum, 0, some); });
   sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, some); });

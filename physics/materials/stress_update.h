@@ -7,6 +7,7 @@
 
 #include "core/simulation/stages.h"
 #include "core/simulation/sweep.h"
+#include "core/simulation/velocity_filter.h"
 #include "core/transfer/cell_averages.h"
 #include "physics/materials/materials.h"
 
@@ -93,6 +94,7 @@ class StressUpdate {
   ColumnId next_position_;                      // MUSL: positions change after the stress update
   ColumnId strain_increment_, spin_increment_;  // F-bar: strains wait for the means of the cells
   CellAverages<Dim> cells_;
+  VelocityFilter<Dim> filter_;
   std::vector<Workspace<Dim>> workspaces_;
   std::vector<MotionReport> motion_;  // by block
   std::vector<StressReport> stress_;  // by block

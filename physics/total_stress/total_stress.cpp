@@ -117,10 +117,10 @@ void TotalStress<Dim>::step_musl(Scene<Dim>& scene, double dt) {
 }
 
 /// With APIC nobody asks for the nodes' change of velocity: momentum and impulse can share a lane. Not with linear
-/// functions, where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::negligible_weight).
+/// functions, where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::smooth).
 template <int Dim>
 void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
-  const bool together = scene.transfer.affine && scene.shape->degree() > 1;
+  const bool together = scene.transfer.affine && scene.shape->smooth();
   const auto what = together ? ScatterWhat::momentum_and_impulse : ScatterWhat::momentum_and_force;
   const double kick = scene.kick(dt);
   sweep.over_particles([&scene, what, kick](Items some) { scatter(scene, what, kick, some); });

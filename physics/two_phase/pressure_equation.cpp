@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/case/case_schema.h"
+#include "core/parallel/multitarget.h"
 #include "core/parallel/parallel.h"
 #include "physics/two_phase/steady_seepage.h"
 
@@ -24,12 +25,18 @@ constexpr double least_continued_share = 0.25;
 constexpr double volume_tolerance = 1e-9;
 constexpr std::size_t items_a_share = 256;
 
+/// Calls body(begin, end) for shares of count items, in parallel.
+template <class Body>
+void parallel_ranges(std::size_t count, const Body& body) {
+  parallel_for((count + items_a_share - 1) / items_a_share,
+               [&](std::size_t share) { body(share * items_a_share, std::min(count, (share + 1) * items_a_share)); });
+}
+
 /// Calls body(i) for i < count in parallel, in shares of many items.
 template <class Body>
 void parallel_shares(std::size_t count, const Body& body) {
-  parallel_for((count + items_a_share - 1) / items_a_share, [&](std::size_t share) {
-    const std::size_t end = std::min(count, (share + 1) * items_a_share);
-    for (std::size_t i = share * items_a_share; i < end; ++i) body(i);
+  parallel_ranges(count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
   });
 }
 
@@ -153,8 +160,8 @@ Lane PressureEquation<Dim>::vertex_sum(std::size_t v) const {
 
 /// Eqs. (44) and (47): what multiplies the Laplacian of the new and of the old pressure.
 template <int Dim>
-typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(const CellSums<Dim>& sums,
-                                                                            const StepConstants& step) const {
+SLUICE_ALWAYS_INLINE typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(
+    const CellSums<Dim>& sums, const StepConstants& step) const {
   CellState cell;
   if (!(sums.volume > 0)) return cell;
   const double inverse = 1 / sums.volume, specific = sums.inverse_density * inverse;
@@ -197,22 +204,28 @@ typename PressureEquation<Dim>::StepConstants PressureEquation<Dim>::constants(c
   return constants;
 }
 
+template <int Dim>
+SLUICE_MULTITARGET void PressureEquation<Dim>::set_states(const CellSums<Dim>* sums, const StepConstants& step,
+                                                          std::size_t begin, std::size_t end) {
+  for (std::size_t c = begin; c < end; ++c) cells_[c] = cell_state(sums[c], step);
+}
+
 /// A cell with little or no water beside a vertex that is inside takes the coefficients of the cells around it.
 template <int Dim>
 void PressureEquation<Dim>::set_cells(const PressureStep& step) {
   const double least = least_fill * geometry_.cell_volume();
   const StepConstants of_step = constants(step);
   cells_.resize(sums_.size());
-  parallel_shares(cells_.size(), [&](std::size_t c) {
-    if (sums_[c].volume >= least) {
-      cells_[c] = cell_state(sums_[c], of_step);
-      return;
+  parallel_ranges(cells_.size(), [&](std::size_t begin, std::size_t end) {
+    set_states(sums_.data(), of_step, begin, end);
+    for (std::size_t c = begin; c < end; ++c) {
+      if (sums_[c].volume >= least) continue;
+      CellSums<Dim> sums = sums_[c];
+      for (const std::int32_t v : grid_.cells()[c].vertex)
+        for (const std::int32_t other : grid_.vertices()[static_cast<std::size_t>(v)].cell)
+          if (other >= 0) sums.add(sums_[static_cast<std::size_t>(other)]);
+      cells_[c] = cell_state(sums, of_step);
     }
-    CellSums<Dim> sums = sums_[c];
-    for (const std::int32_t v : grid_.cells()[c].vertex)
-      for (const std::int32_t other : grid_.vertices()[static_cast<std::size_t>(v)].cell)
-        if (other >= 0) sums.add(sums_[static_cast<std::size_t>(other)]);
-    cells_[c] = cell_state(sums, of_step);
   });
 }
 
@@ -279,7 +292,8 @@ constexpr auto couplings_of_cells = [] {
 
 /// Written out for each place of the stencil when compiled: no branches, and sums in registers.
 template <int Dim>
-typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Grid::Vertex& vertex) const {
+SLUICE_ALWAYS_INLINE typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(
+    const typename Grid::Vertex& vertex) const {
   static const CellState nothing{};
   std::array<const CellState*, Grid::corners> cell;
   for (std::size_t k = 0; k < Grid::corners; ++k)
@@ -314,7 +328,7 @@ typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(const typename Gr
 /// How unevenly particles lie around a vertex inside, eq. (47a): from the slopes of the fill, unless those are the
 /// surface's [1/m2].
 template <int Dim>
-double PressureEquation<Dim>::unevenness(std::size_t i) const {
+SLUICE_ALWAYS_INLINE double PressureEquation<Dim>::unevenness(std::size_t i) const {
   const auto& vertex = grid_.vertices()[i];
   double sum = 0;
   for (int a = 0, step = 1; a < Dim; ++a, step *= 3) {
@@ -410,7 +424,7 @@ void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const Exter
 
 /// The same where all vertices around are inside and no face is near: nothing but the sums.
 template <int Dim>
-void PressureEquation<Dim>::write_inner_row(std::size_t i, const Row& row) {
+SLUICE_ALWAYS_INLINE void PressureEquation<Dim>::write_inner_row(std::size_t i, const Row& row) {
   const auto& vertex = grid_.vertices()[i];
   const double storage = row.storage + row.steadied * unevenness(i);
   double right = row.push + storage * old_[i];
@@ -424,7 +438,7 @@ void PressureEquation<Dim>::write_inner_row(std::size_t i, const Row& row) {
 }
 
 template <int Dim>
-bool PressureEquation<Dim>::is_inner(const typename Grid::Vertex& vertex) const {
+SLUICE_ALWAYS_INLINE bool PressureEquation<Dim>::is_inner(const typename Grid::Vertex& vertex) const {
   bool inner = vertex.share == 1;
   for (const std::int32_t j : vertex.neighbour) {
     inner = inner && j >= 0 && kind_[static_cast<std::size_t>(j)] == Kind::inside;
@@ -438,24 +452,33 @@ void PressureEquation<Dim>::assemble(const ExternalPressure<Dim>& outside, const
   const std::size_t count = grid_.vertices().size();
   values_.resize(grid_.pattern().row.size());
   right_side_.resize(count);
-  parallel_shares(count, [&](std::size_t i) {
+  parallel_ranges(count, [&](std::size_t begin, std::size_t end) { write_rows(begin, end, outside, step.time); });
+}
+
+template <int Dim>
+SLUICE_MULTITARGET void PressureEquation<Dim>::write_rows(std::size_t begin, std::size_t end,
+                                                          const ExternalPressure<Dim>& outside, double time) {
+  for (std::size_t i = begin; i < end; ++i) {
     const auto& vertex = grid_.vertices()[i];
     const Row own = row(vertex);
-    if (is_inner(vertex)) {
+    if (is_inner(vertex))
       write_inner_row(i, own);
-      return;
-    }
-    if (kind_[i] == Kind::inside) {
-      write_row(i, own, outside, step.time);
-      return;
-    }
-    // An equation of its own, of about the size of the others.
-    for (const std::int32_t slot : vertex.slot)
-      if (slot >= 0) values_[static_cast<std::size_t>(slot)] = 0;
-    const double diagonal = own.implicit[Grid::centre] > 0 ? own.implicit[Grid::centre] : 1;
-    values_[static_cast<std::size_t>(vertex.slot[Grid::centre])] = diagonal;
-    right_side_[i] = kind_[i] == Kind::given ? diagonal * given_[i] : 0;
-  });
+    else if (kind_[i] == Kind::inside)
+      write_row(i, own, outside, time);
+    else
+      write_own_equation(i, own);
+  }
+}
+
+/// A vertex without an unknown: an equation of its own, of about the size of the others.
+template <int Dim>
+void PressureEquation<Dim>::write_own_equation(std::size_t i, const Row& row) {
+  const auto& vertex = grid_.vertices()[i];
+  for (const std::int32_t slot : vertex.slot)
+    if (slot >= 0) values_[static_cast<std::size_t>(slot)] = 0;
+  const double diagonal = row.implicit[Grid::centre] > 0 ? row.implicit[Grid::centre] : 1;
+  values_[static_cast<std::size_t>(vertex.slot[Grid::centre])] = diagonal;
+  right_side_[i] = kind_[i] == Kind::given ? diagonal * given_[i] : 0;
 }
 
 template <int Dim>

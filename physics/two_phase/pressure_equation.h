@@ -98,11 +98,14 @@ class PressureEquation {
   void sum_cells();
   Lane vertex_sum(std::size_t v) const;
   void set_cells(const PressureStep& step);
+  void set_states(const CellSums<Dim>* sums, const StepConstants& step, std::size_t begin, std::size_t end);
   StepConstants constants(const PressureStep& step) const;
   CellState cell_state(const CellSums<Dim>& sums, const StepConstants& step) const;
   void classify(const PressureStep& step);
   bool on_face(const Index<Dim>& place, int axis, int side) const;
   void assemble(const ExternalPressure<Dim>& outside, const PressureStep& step);
+  void write_rows(std::size_t begin, std::size_t end, const ExternalPressure<Dim>& outside, double time);
+  void write_own_equation(std::size_t i, const Row& row);
   Row row(const typename Grid::Vertex& vertex) const;
   bool is_inner(const typename Grid::Vertex& vertex) const;
   double unevenness(std::size_t i) const;

@@ -48,9 +48,10 @@ RelativeMotion<Dim>::RelativeMotion(const Case& definition, const WaterCase& wat
         section.find("water")->find("permeability")->place,
         fmt::format("material '{}': only `formulation: u-p` takes permeabilities that differ between axes", name));
   }
-  if (active_)
-    faces_ = std::make_unique<Faces<Dim>>(closed_faces(definition, water), grid_of<Dim>(definition.grid),
-                                          shape_registry<Dim>().find(definition.scheme.shape, {})()->degree());
+  if (!active_) return;
+  const auto shape = shape_registry<Dim>().find(definition.scheme.shape, {})();
+  faces_ = std::make_unique<Faces<Dim>>(closed_faces(definition, water), grid_of<Dim>(definition.grid), shape->reach(),
+                                        shape->outside());
 }
 
 template <int Dim>
@@ -121,7 +122,8 @@ ScatterInput<Dim> RelativeMotion<Dim>::water_input(Scene<Dim>& scene, const Part
 
 template <int Dim>
 void RelativeMotion<Dim>::begin_step(const Scene<Dim>& scene) {
-  nodes_.resize(scene.blocks, scene.shape->degree());
+  nodes_.resize(scene.blocks, scene.shape->reach());
+  if (VelocityFilter<Dim>::wanted(scene)) filter_.resize(scene);
   before_.resize(scene.blocks.node_blocks().size() * block_nodes<Dim>);
 }
 
@@ -137,8 +139,10 @@ void RelativeMotion<Dim>::scatter(Scene<Dim>& scene, Items some) {
 template <int Dim>
 void RelativeMotion<Dim>::collect(Scene<Dim>& scene, Items some) {
   const auto timing = scene.clock.time(Stage::nodes);
+  const bool filtered = VelocityFilter<Dim>::wanted(scene);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     nodes_.collect_momentum(scene.blocks, b);
+    if (filtered) filter_.take(scene, b, nodes_.momentum(b), *faces_);
     for (std::size_t n = 0; n < block_nodes<Dim>; ++n) {
       const Lane water = nodes_.momentum(b)[n], mixture = scene.nodes.momentum(b)[n];
       const double share = mixture[0] > 0 ? water[0] / mixture[0] : 0;
@@ -268,7 +272,15 @@ void RelativeMotion<Dim>::compress(Scene<Dim>& scene, std::vector<Workspace<Dim>
 }
 
 template <int Dim>
-void RelativeMotion<Dim>::gather(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt, Items some) {
+void RelativeMotion<Dim>::gather(Sweep<Dim>& sweep, Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces,
+                                 double dt) {
+  if (VelocityFilter<Dim>::wanted(scene)) filter_.add_maps(sweep, scene, water_mass_, *faces_, nodes_);
+  sweep.over_particles([this, &scene, &workspaces, dt](Items some) { take_from_nodes(scene, workspaces, dt, some); });
+}
+
+template <int Dim>
+void RelativeMotion<Dim>::take_from_nodes(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt,
+                                          Items some) {
   const auto timing = scene.clock.time(Stage::gather);
   Columns& columns = scene.particles.columns;
   MotionUpdate<Dim> update = motion_update(scene, dt, scratch_);

@@ -7,6 +7,7 @@
 
 #include "core/simulation/stages.h"
 #include "core/simulation/sweep.h"
+#include "core/simulation/velocity_filter.h"
 #include "physics/two_phase/pore_water.h"
 
 namespace sluice {
@@ -40,19 +41,21 @@ class RelativeMotion {
   /// `explicit`: the pressure of the particles from the divergences of the nodes' new velocities.
   void compress(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt, Items some);
   /// Nodes to particles.
-  void gather(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt, Items some);
+  void gather(Sweep<Dim>& sweep, Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt);
 
  private:
   ScatterInput<Dim> water_input(Scene<Dim>& scene, const ParticleBlock<Dim>& block);
   void set_drag(Scene<Dim>& scene, const ParticleBlock<Dim>& block);
   void scatter_drag(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block);
   void advance_nodes(Scene<Dim>& scene, std::size_t b, double kick);
+  void take_from_nodes(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, double dt, Items some);
 
   const WaterCase& water_;
   PoreWater<Dim>& pores_;
   bool active_, projected_;
   std::unique_ptr<Faces<Dim>> faces_;  // what they are to the water
   NodeFields<Dim> nodes_;
+  VelocityFilter<Dim> filter_;
   std::vector<Lane> before_;  // {r} of the nodes at the beginning of the step, and the share m_w / m
   ColumnId velocity_, affine_;
   ColumnId water_mass_, drag_, drive_, scratch_, partial_stress_, relative_divergence_;

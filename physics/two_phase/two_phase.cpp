@@ -190,7 +190,7 @@ void TwoPhase<Dim>::collect(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
 template <int Dim>
 void TwoPhase<Dim>::correct(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
   const bool friction = scene.faces.any_friction();
-  if (friction) wall_.resize(scene.blocks, scene.shape->degree());
+  if (friction) wall_.resize(scene.blocks, scene.shape->reach());
   sweep.over_particles([this, &scene, friction](Items some) {
     const auto timing = scene.clock.time(Stage::scatter);
     const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
@@ -207,8 +207,7 @@ void TwoPhase<Dim>::correct(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
 /// Particles move and strain with the nodes; their pores follow.
 template <int Dim>
 void TwoPhase<Dim>::gather(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
-  if (relative_.active())
-    sweep.over_particles([this, &scene, dt](Items some) { relative_.gather(scene, stress_.workspaces(), dt, some); });
+  if (relative_.active()) relative_.gather(sweep, scene, stress_.workspaces(), dt);
   switch (stress_.timing()) {
     case StressTiming::usf:
       stress_.gather_motion(sweep, scene, dt);

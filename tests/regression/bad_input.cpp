@@ -168,7 +168,8 @@ TEST(BadCase, has_no_bodies) { expect_refused(column, {"--set bodies", "empty li
 
 TEST(BadCase, has_a_time_step_above_the_limit) {
   expect_refused(column + "scheme: {time_step: 10 ms}\n",
-                 {"scheme.time_step of 0.01 s", "wave limit of 0.00", "time_step: computed"});
+                 {"case.yaml:24:21: scheme.time_step of 0.01 s", "wave limit of 0.00", "time_step: computed"});
+  expect_refused(column, {"--set scheme.time_step: scheme.time_step of 0.01 s"}, {"--set", "scheme.time_step=10 ms"});
 }
 
 TEST(BadCase, has_an_unknown_form_of_strain) {
@@ -187,7 +188,12 @@ TEST(BadCase, observes_without_a_direction) {
 
 TEST(BadCase, asks_for_pictures_of_nothing) {
   expect_refused(with(column, "every: 0.1 s", "every: 0.1 s, pictures: [displacment]"),
-                 {"displacment", "displacement", "did you mean"});
+                 {"case.yaml:23:35", "'displacment'", "displacement", "did you mean"});
+  // One word may stand for a list of one.
+  expect_refused(with(column, "every: 0.1 s", "every: 0.1 s, pictures: displacment"),
+                 {"case.yaml:23:34", "'displacment'", "did you mean 'displacement'?"});
+  expect_refused(column, {"--set output.pictures: ", "unknown field 'false'", "allowed: ", "displacement", "`[]`"},
+                 {"--set", "output.pictures=false"});
 }
 
 // ---- the command line ----------------------------------------------------------------------------------------------
@@ -205,6 +211,12 @@ TEST(BadCommand, overrides_with_a_bad_value) {
 TEST(BadCommand, overrides_without_a_value) {
   expect_refused(column, {"--set end_time", "KEY=VALUE"}, {"--set", "end_time"});
   expect_refused(column, {"--set =3", "KEY=VALUE"}, {"--set", "=3"});
+}
+
+TEST(BadCommand, asks_for_a_number_of_threads_that_cannot_be) {
+  for (const std::string word : {"0", "-1", "two", "1.5", "2x", "1025", "99999999999"})
+    expect_refused(column, {"--threads", "found '" + word + "'", "a whole number from 1 to 1024", "all cores"},
+                   {"--threads", word});
 }
 
 TEST(BadCommand, is_not_known) {
@@ -264,20 +276,29 @@ TEST(OutputFolder, is_results_and_the_name_of_the_case_by_default) {
   EXPECT_EQ(names_in(scratch / "results/sand heap"), promised_names());
 }
 
+/// A file in the way is bad input, and is left as it is; a folder that the system refuses is a failed run.
 TEST(OutputFolder, cannot_be_made) {
   const Scratch scratch;
   scratch.write("case.yaml", column);
-  scratch.write("a_file", "");
-  for (const std::string folder : {"a_file", "a_file/out", "/proc/out"})
-    for (const bool force : {false, true}) {
-      SCOPED_TRACE(folder + (force ? " --force" : ""));
+  scratch.write("a_file", "precious");
+  const struct {
+    std::string folder, reason;
+    int code;
+  } troubles[] = {{"a_file", "a_file is a file; take another --output", exit_code::bad_input},
+                  {"a_file/out", "a_file is a file; take another --output", exit_code::bad_input},
+                  {"/proc/out", "", exit_code::run_failed}};
+  for (const auto& [folder, reason, code] : troubles)
+    for (const std::string option : {"", "--force", "--resume"}) {
+      if (option == "--resume" && code != exit_code::bad_input) continue;
+      SCOPED_TRACE(folder + " " + option);
       std::vector<std::string> arguments = {"run", "case.yaml", "--output", folder};
-      if (force) arguments.emplace_back("--force");
+      if (!option.empty()) arguments.push_back(option);
       const Ending ending = run_sluice(arguments, scratch.path());
-      EXPECT_EQ(ending.code, exit_code::run_failed);
-      EXPECT_TRUE(begins(ending.err, "error: the output folder " + folder + " cannot be made"));
+      EXPECT_EQ(ending.code, code);
+      EXPECT_TRUE(begins(ending.err, "error: the output folder " + folder + " cannot be made: " + reason));
     }
   EXPECT_EQ(names_in(scratch.path()), (std::set<std::string>{"case.yaml", "a_file"}));
+  EXPECT_EQ(text_of(scratch / "a_file"), "precious");
 }
 
 /// A full disk, played by a limit on the size of files, in units of 512 bytes: too little for a checkpoint, and enough
@@ -362,7 +383,7 @@ TEST(FailedRun, states_the_limit_that_a_fixed_step_breaks_on_the_way) {
   scratch.write("case.yaml", with(column, "-9.81", "-300") + "scheme: {time_step: 5 ms}\n");
   const Ending ending = run_sluice({"run", "case.yaml", "-o", "out"}, scratch.path());
   EXPECT_EQ(ending.code, exit_code::bad_input);
-  EXPECT_TRUE(holds(ending.err, "scheme.time_step of 0.005 s exceeds the "));
+  EXPECT_TRUE(holds(ending.err, "case.yaml:24:21: scheme.time_step of 0.005 s exceeds the "));
   EXPECT_TRUE(holds(ending.err, " limit of "));
   EXPECT_GT(last_number(scratch / "out/history.csv", "step"), 0);
 }

@@ -81,6 +81,26 @@ TEST_F(Pictures, of_three_dimensions_show_a_section_and_a_view) {
                                               "history.png", "material.png", "material_3d.png", "observations.png"});
 }
 
+/// The names of the axes are those of the case file and of the messages: in plane strain y points up, in 3-D z.
+TEST_F(Pictures, name_the_axes_as_the_case_does) {
+  for (const auto& [text, upwards] : {std::pair{column, "y [m]"}, {block, "z [m]"}}) {
+    run(text, {"--set", "end_time=0.05 s", "--force"});
+    const std::string program =
+        "import sys\n"
+        "sys.dont_write_bytecode = True\n"
+        "sys.path.insert(0, '" SLUICE_SOURCE_DIR
+        "/core/output')\n"
+        "import pictures\n"
+        "results = pictures.Results('out')\n"
+        "pictures.plt.Figure.savefig = lambda figure, *a, **k: print(figure.axes[0].get_xlabel(), "
+        "figure.axes[0].get_ylabel())\n"
+        "pictures.draw_field(results, pictures.View(results), 'displacement', [0], 'one.png')\n";
+    const Ending ending = Process({"/usr/bin/python3", "-c", program}, scratch_.path()).wait();
+    EXPECT_EQ(ending.code, exit_code::done) << ending.err;
+    EXPECT_EQ(ending.out, std::string("x [m] ") + upwards + "\n");
+  }
+}
+
 TEST_F(Pictures, of_a_field_that_is_not_there_are_refused_with_those_that_are) {
   run(column, {"--set", "end_time=0.05 s"});
   const Ending ending = plot({"--fields", "temperature"});

@@ -46,10 +46,18 @@ std::vector<Vector<Dim>> points(const GridGeometry<Dim>& g) {
   return all;
 }
 
+/// The stencil of a point, or of a particle that fills half of the width of a cell.
+template <int Dim>
+Stencil<Dim> stencil(const ShapeKernels<Dim>& shape, const GridGeometry<Dim>& g, const Vector<Dim>& x) {
+  std::array<double, domain_capacity<Dim>> domain{};
+  shape.fill_domain(g, 0.5, domain);
+  return shape.stencil(g, x, domain);
+}
+
 template <int Dim>
 void expect_linear_reproduction(const ShapeKernels<Dim>& shape, const GridGeometry<Dim>& g) {
   for (const auto& x : points(g)) {
-    const Stencil<Dim> s = shape.stencil(g, x);
+    const Stencil<Dim> s = stencil<Dim>(shape, g, x);
     double unity = 0;
     Vector<Dim> gradient_of_one{}, place{};
     std::array<Vector<Dim>, Dim> gradient_of_place{};
@@ -59,7 +67,7 @@ void expect_linear_reproduction(const ShapeKernels<Dim>& shape, const GridGeomet
       unity += s.value[i];
       for (int a = 0; a < Dim; ++a) {
         ASSERT_GE(s.node[i][a], 0);
-        ASSERT_LT(s.node[i][a], g.cells[a] + shape.degree());
+        ASSERT_LT(s.node[i][a], g.cells[a] + shape.reach());
         const double at = shape.node_position(g, a, s.node[i][a]);
         place[a] += s.value[i] * at;
         gradient_of_one[a] += s.gradient[i][a];
@@ -78,14 +86,15 @@ void expect_linear_reproduction(const ShapeKernels<Dim>& shape, const GridGeomet
 /// Values of the stencil, by node.
 template <int Dim>
 std::map<Index<Dim>, double> values(const ShapeKernels<Dim>& shape, const GridGeometry<Dim>& g, const Vector<Dim>& x) {
-  const Stencil<Dim> s = shape.stencil(g, x);
+  const Stencil<Dim> s = stencil<Dim>(shape, g, x);
   std::map<Index<Dim>, double> v;
   for (int n = 0; n < s.count; ++n) v[s.node[static_cast<std::size_t>(n)]] = s.value[static_cast<std::size_t>(n)];
   return v;
 }
 
-// Central differences of width 1e-6 cells: errors of 1e-9 of the slope from round-off, and none from curvature
-// (quadratic).
+// Central differences of width 1e-6 cells: errors of 1e-9 of the slope from round-off, 1e-12 from the third derivative.
+// Particles with a size shrink towards a wall, and their slope is the mean over the particle, not the derivative: they
+// are looked at away from walls.
 template <int Dim>
 void expect_gradients(const ShapeKernels<Dim>& shape, const GridGeometry<Dim>& g) {
   std::mt19937 generator(2);
@@ -94,16 +103,18 @@ void expect_gradients(const ShapeKernels<Dim>& shape, const GridGeometry<Dim>& g
     Vector<Dim> x;
     for (int a = 0; a < Dim; ++a)
       x[a] = g.min[a] + g.cell[a] * (std::floor(uniform(generator) * g.cells[a]) + uniform(generator));
-    const Stencil<Dim> s = shape.stencil(g, x);
+    const Stencil<Dim> s = stencil<Dim>(shape, g, x);
     for (int a = 0; a < Dim; ++a) {
+      const double cells = (x[a] - g.min[a]) / g.cell[a];
+      if (shape.outside() > 0 && std::min(cells, g.cells[a] - cells) < 0.26) continue;
       const double step = 1e-6 * g.cell[a];
       Vector<Dim> up = x, down = x;
       up[a] += step;
       down[a] -= step;
-      const auto above = values<Dim>(shape, g, up), below = values<Dim>(shape, g, down);
+      auto above = values<Dim>(shape, g, up), below = values<Dim>(shape, g, down);
       for (int n = 0; n < s.count; ++n) {
         const auto k = static_cast<std::size_t>(n);
-        EXPECT_NEAR(s.gradient[k][a], (above.at(s.node[k]) - below.at(s.node[k])) / (2 * step), 1e-8 / g.cell[a]);
+        EXPECT_NEAR(s.gradient[k][a], (above[s.node[k]] - below[s.node[k]]) / (2 * step), 1e-8 / g.cell[a]);
       }
     }
   }
@@ -136,11 +147,12 @@ TEST_P(ShapeFunctions, OutermostNodeCarriesTheValueAtTheWall) {
   const auto shape = shape_registry<2>().find(GetParam(), {})();
   const auto g = grid<2>(5);
   const auto low = values<2>(*shape, g, g.min), high = values<2>(*shape, g, g.max);
-  EXPECT_NEAR(low.at({0, 0}), 1, 1e-14);
-  EXPECT_NEAR(high.at({g.cells[0] + shape->degree() - 1, g.cells[1] + shape->degree() - 1}), 1, 1e-14);
+  const int first = shape->outside(), last = shape->reach() - 1 - shape->outside();
+  EXPECT_NEAR(low.at({first, first}), 1, 1e-13);
+  EXPECT_NEAR(high.at({g.cells[0] + last, g.cells[1] + last}), 1, 1e-13);
   for (int a = 0; a < 2; ++a) {
-    EXPECT_DOUBLE_EQ(shape->node_position(g, a, 0), g.min[a]);
-    EXPECT_DOUBLE_EQ(shape->node_position(g, a, g.cells[a] + shape->degree() - 1), g.max[a]);
+    EXPECT_DOUBLE_EQ(shape->node_position(g, a, first), g.min[a]);
+    EXPECT_DOUBLE_EQ(shape->node_position(g, a, g.cells[a] + last), g.max[a]);
   }
 }
 

@@ -23,6 +23,7 @@ struct Fixture {
   std::array<std::vector<double>, Dim * Dim> c;
   std::array<std::vector<double>, symmetric_components<Dim>> stress, strain;
   std::array<std::vector<double>, spin_components<Dim>> spin;
+  std::array<std::vector<double>, domain_capacity<Dim>> domain;
   std::vector<double> mass, volume;
   const ShapeKernels<Dim>& shape;
 
@@ -60,11 +61,28 @@ struct Fixture {
     for (auto& column : spin) fill(column, [&] { return 0; });
     fill(mass, [&] { return 1 + uniform(generator); });
     fill(volume, [&] { return 0.1 + uniform(generator); });
+    fill_domains();
+  }
+
+  /// One to three particles in the width of a cell.
+  void fill_domains() {
+    std::array<double, domain_capacity<Dim>> numbers{};
+    for (auto& column : domain) column.resize(particles + 64);
+    for (std::size_t p = 0; p < particles + 64; ++p) {
+      shape.fill_domain(grid, 1.0 / static_cast<double>(1 + p % 3), numbers);
+      for (std::size_t k = 0; k < numbers.size(); ++k) domain[k][p] = numbers[k];
+    }
+  }
+  Stencil<Dim> stencil(std::size_t p) const {
+    std::array<double, domain_capacity<Dim>> numbers{};
+    for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k] = domain[k][p];
+    return shape.stencil(grid, at(p), numbers);
   }
 
   BlockParticles<Dim> view() const {
     BlockParticles<Dim> view{&grid, first_cell, 0, particles, {}};
     for (int a = 0; a < Dim; ++a) view.position[a] = x[a].data();
+    for (std::size_t k = 0; k < domain.size(); ++k) view.domain[k] = domain[k].data();
     return view;
   }
   ScatterInput<Dim> input(bool affine) const {
@@ -83,11 +101,11 @@ struct Fixture {
     for (int a = 0; a < Dim; ++a) place[a] = x[a][p];
     return place;
   }
-  int tile_size() const { return power(tile_width<Dim>(shape.degree()), Dim); }
+  int tile_size() const { return power(tile_width<Dim>(shape.reach()), Dim); }
   int place_in_tile(const Index<Dim>& node) const {
     int place = 0;
     for (int a = Dim - 1; a >= 0; --a)
-      place = place * tile_width<Dim>(shape.degree()) + node[a] - first_cell[a] + tile_margin;
+      place = place * tile_width<Dim>(shape.reach()) + node[a] - first_cell[a] + tile_margin;
     return place;
   }
   double sigma(std::size_t p, int a, int b) const {
@@ -106,7 +124,7 @@ struct Dense {
       : momentum(static_cast<std::size_t>(f.tile_size())), force(momentum.size()) {
     for (std::size_t p = 0; p < particles; ++p) {
       const Vector<Dim> x = f.at(p);
-      const Stencil<Dim> s = f.shape.stencil(f.grid, x);
+      const Stencil<Dim> s = f.stencil(p);
       for (int n = 0; n < s.count; ++n) {
         const auto i = static_cast<std::size_t>(n);
         const auto place = static_cast<std::size_t>(f.place_in_tile(s.node[i]));
@@ -161,8 +179,12 @@ void expect_scatter(const Fixture<Dim>& f, bool affine) {
   }
 }
 
+/// The affine field that particles get.
+enum class Affine { none, apic, tpic };
+
 template <int Dim>
-void expect_gather(Fixture<Dim>& f, bool affine, bool with_strain) {
+void expect_gather(Fixture<Dim>& f, Affine kind, bool with_strain) {
+  const bool affine = kind != Affine::none;
   const auto size = static_cast<std::size_t>(f.tile_size());
   LaneBuffer motion(size * motion_lanes<Dim>);
   std::mt19937 generator(13);
@@ -177,14 +199,16 @@ void expect_gather(Fixture<Dim>& f, bool affine, bool with_strain) {
     return Dim == 2 ? motion.lanes.data()[first][2 + a] : motion.lanes.data()[first + motion_lanes<Dim> - 1][a];
   };
 
-  const double dt = 0.02, flip = 0.7;
+  const double dt = 0.02;
+  const VelocityShares shares = {0.7, 0.6, 0.3};
   const auto before = f.v;
   StrainIncrements<Dim> strain;
   for (std::size_t k = 0; k < f.strain.size(); ++k) strain.strain[k] = f.strain[k].data();
   for (std::size_t k = 0; k < f.spin.size(); ++k) strain.rotation[k] = f.spin[k].data();
   MotionUpdate<Dim> update{};
   update.dt = dt;
-  update.flip_fraction = flip;
+  update.shares = shares;
+  update.affine_is_gradient = kind == Affine::tpic;
   for (int a = 0; a < Dim; ++a) {
     update.velocity[a] = f.v[a].data();
     update.position[a] = f.x_new[a].data();
@@ -198,7 +222,7 @@ void expect_gather(Fixture<Dim>& f, bool affine, bool with_strain) {
   double fastest = 0;
   for (std::size_t p = 0; p < particles; ++p) {
     const Vector<Dim> x = f.at(p);
-    const Stencil<Dim> s = f.shape.stencil(f.grid, x);
+    const Stencil<Dim> s = f.stencil(p);
     Vector<Dim> v{}, dv{}, square{};
     std::array<Vector<Dim>, Dim> gradient{}, moment{};
     for (int n = 0; n < s.count; ++n) {
@@ -216,13 +240,15 @@ void expect_gather(Fixture<Dim>& f, bool affine, bool with_strain) {
     }
     double squared = 0;
     for (int a = 0; a < Dim; ++a) {
-      const double expected = affine ? v[a] : flip * (before[a][p] + dv[a]) + (1 - flip) * v[a];
+      const double expected = affine ? v[a] : shares.old * before[a][p] + shares.change * dv[a] + shares.nodes * v[a];
       ASSERT_NEAR(f.v[a][p], expected, 1e-13) << "particle " << p;
       ASSERT_NEAR(f.x_new[a][p], x[a] + dt * v[a], 1e-13) << "particle " << p;
       squared += expected * expected;
       for (int b = 0; b < Dim && affine; ++b) {
         const double c = f.c[static_cast<std::size_t>(a * Dim + b)][p];
-        if (square[b] > 1e-6 * f.grid.cell[b] * f.grid.cell[b]) {  // C = B D^-1, where D can be inverted
+        if (kind == Affine::tpic) {
+          ASSERT_NEAR(c, gradient[a][b], 1e-12 / f.grid.cell[b]) << "particle " << p;
+        } else if (square[b] > 1e-6 * f.grid.cell[b] * f.grid.cell[b]) {  // C = B D^-1, where D can be inverted
           ASSERT_NEAR(c, moment[a][b] / square[b], 1e-9 / f.grid.cell[b]) << "particle " << p;
         }
         ASSERT_LT(std::abs(c), 100 / f.grid.cell[b]) << "particle " << p;
@@ -255,7 +281,7 @@ void expect_body_force(const Fixture<Dim>& f) {
   ScatterInput<Dim> in = f.input(false);
   for (int a = 0; a < Dim; ++a) in.body_force[a] = f.c[static_cast<std::size_t>(a)].data();
   for (std::size_t p = 0; p < particles; ++p) {
-    const Stencil<Dim> s = f.shape.stencil(f.grid, f.at(p));
+    const Stencil<Dim> s = f.stencil(p);
     for (int n = 0; n < s.count; ++n) {
       const auto i = static_cast<std::size_t>(n);
       auto& force = dense.force[static_cast<std::size_t>(f.place_in_tile(s.node[i]))];
@@ -299,7 +325,7 @@ void expect_field(const Fixture<Dim>& f) {
   }
   f.shape.gather_field(f.view(), field.tile.lanes.data(), out);
   for (std::size_t p = 0; p < particles; ++p) {
-    const Stencil<Dim> s = f.shape.stencil(f.grid, f.at(p));
+    const Stencil<Dim> s = f.stencil(p);
     double sum = 0;
     Vector<Dim> slope{};
     for (int n = 0; n < s.count; ++n) {
@@ -324,7 +350,7 @@ void expect_divergence(const Fixture<Dim>& f) {
   }
   f.shape.gather_divergence(f.view(), motion.tile.lanes.data(), divergence.data(), out);
   for (std::size_t p = 0; p < particles; ++p) {
-    const Stencil<Dim> s = f.shape.stencil(f.grid, f.at(p));
+    const Stencil<Dim> s = f.stencil(p);
     double sum = 0;
     Vector<Dim> dv{};
     for (int n = 0; n < s.count; ++n) {
@@ -337,6 +363,30 @@ void expect_divergence(const Fixture<Dim>& f) {
     ASSERT_NEAR(divergence[p], sum, 1e-12 / f.grid.cell[0]) << "particle " << p;
     for (int a = 0; a < Dim; ++a) ASSERT_NEAR(change[a][p], dv[a], 1e-13) << "particle " << p;
   }
+}
+
+// The nodes' velocity at the particles, and from there back to the nodes: sums of some dozen terms of the order of 1.
+template <int Dim>
+void expect_map_again(const Fixture<Dim>& f) {
+  const RandomMotion<Dim> motion(f);
+  const auto size = static_cast<std::size_t>(f.tile_size());
+  std::vector<std::array<double, 4>> dense(size);
+  for (std::size_t p = 0; p < particles; ++p) {
+    const Stencil<Dim> s = f.stencil(p);
+    Vector<Dim> v{};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(s.count); ++i)
+      for (int a = 0; a < Dim; ++a) v[a] += s.value[i] * motion.at(s.node[i], 0, a);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(s.count); ++i) {
+      auto& node = dense[static_cast<std::size_t>(f.place_in_tile(s.node[i]))];
+      node[0] += f.mass[p] * s.value[i];
+      for (std::size_t a = 0; a < Dim; ++a) node[a + 1] += f.mass[p] * s.value[i] * v[a];
+    }
+  }
+  LaneBuffer tile(size);
+  tile.fill(size, 7);
+  f.shape.map_again(f.view(), f.mass.data(), motion.tile.lanes.data(), tile.lanes.data());
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t k = 0; k < Dim + 1; ++k) ASSERT_NEAR(tile.lanes.data()[i][k], dense[i][k], 1e-11) << "node " << i;
 }
 
 class Transfer : public ::testing::TestWithParam<std::string> {
@@ -352,6 +402,17 @@ class Transfer : public ::testing::TestWithParam<std::string> {
       }
     }
   }
+  template <int Dim, class Check>
+  void for_each_affine(const Check& check) {
+    const auto shape = shape_registry<Dim>().find(GetParam(), {})();
+    for (const int place : {0, 1, 2}) {
+      SCOPED_TRACE(std::to_string(Dim) + "-D, block " + std::to_string(place));
+      for (const Affine affine : {Affine::none, Affine::apic, Affine::tpic}) {
+        Fixture<Dim> fixture(*shape, place);
+        check(fixture, affine);
+      }
+    }
+  }
 };
 
 TEST_P(Transfer, ScatterEqualsTheSumsOverTheStencil) {
@@ -360,13 +421,13 @@ TEST_P(Transfer, ScatterEqualsTheSumsOverTheStencil) {
 }
 
 TEST_P(Transfer, GatherEqualsTheSumsOverTheStencil) {
-  for_each_place<2>([](auto& f, bool affine) { expect_gather<2>(f, affine, true); });
-  for_each_place<3>([](auto& f, bool affine) { expect_gather<3>(f, affine, true); });
+  for_each_affine<2>([](auto& f, Affine affine) { expect_gather<2>(f, affine, true); });
+  for_each_affine<3>([](auto& f, Affine affine) { expect_gather<3>(f, affine, true); });
 }
 
 TEST_P(Transfer, GatherWithoutStrainGivesTheSame) {
-  for_each_place<2>([](auto& f, bool affine) { expect_gather<2>(f, affine, false); });
-  for_each_place<3>([](auto& f, bool affine) { expect_gather<3>(f, affine, false); });
+  for_each_affine<2>([](auto& f, Affine affine) { expect_gather<2>(f, affine, false); });
+  for_each_affine<3>([](auto& f, Affine affine) { expect_gather<3>(f, affine, false); });
 }
 
 TEST_P(Transfer, BodyForceIsSharedLikeTheMass) {
@@ -377,6 +438,11 @@ TEST_P(Transfer, BodyForceIsSharedLikeTheMass) {
 TEST_P(Transfer, FieldEqualsTheSumsOverTheStencil) {
   for_each_place<2>([](auto& f, bool) { expect_field<2>(f); });
   for_each_place<3>([](auto& f, bool) { expect_field<3>(f); });
+}
+
+TEST_P(Transfer, MappingAgainEqualsTheSumsOverTheStencil) {
+  for_each_place<2>([](auto& f, bool) { expect_map_again<2>(f); });
+  for_each_place<3>([](auto& f, bool) { expect_map_again<3>(f); });
 }
 
 TEST_P(Transfer, DivergenceEqualsTheSumsOverTheStencil) {

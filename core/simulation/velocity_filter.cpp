@@ -1,0 +1,93 @@
+#include "core/simulation/velocity_filter.h"
+
+namespace sluice {
+
+namespace {
+
+/// (-1)^(k+1) m! / (k! (m - k)!)
+double coefficient(int m, int k) {
+  double c = k % 2 == 1 ? 1 : -1;
+  for (int i = 1; i <= k; ++i) c *= static_cast<double>(m - k + i) / i;
+  return c;
+}
+
+}  // namespace
+
+template <int Dim>
+void VelocityFilter<Dim>::resize(const Scene<Dim>& scene) {
+  for (auto& nodes : nodes_) nodes.resize(scene.blocks, scene.shape->reach());
+}
+
+/// A face that fixes a velocity fixes it in every u_k.
+template <int Dim>
+void VelocityFilter<Dim>::take(Scene<Dim>& scene, std::size_t node_block, const Lane* momentum,
+                               const Faces<Dim>& faces) {
+  const auto& block = scene.blocks.node_blocks()[node_block];
+  Lane* const motion = nodes_[0].motion(node_block);
+  divide_by_mass<Dim>(block, momentum, motion);
+  faces.fix(block, motion);
+}
+
+template <int Dim>
+void VelocityFilter<Dim>::add(Sweep<Dim>& sweep, Scene<Dim>& scene) {
+  if (!wanted(scene)) return;
+  resize(scene);
+  sweep.over_nodes([this, &scene](Items some) {
+    const auto timing = scene.clock.time(Stage::nodes);
+    parallel_for(some.within(scene.blocks.node_blocks().size()),
+                 [&](std::size_t b) { take(scene, b, scene.nodes.momentum(b), scene.faces); });
+  });
+  add_maps(sweep, scene, scene.particles.mass, scene.faces, scene.nodes);
+}
+
+template <int Dim>
+void VelocityFilter<Dim>::add_maps(Sweep<Dim>& sweep, Scene<Dim>& scene, ColumnId mass, const Faces<Dim>& faces,
+                                   NodeFields<Dim>& target) {
+  for (int k = 2; k <= scene.scheme.xpic_order; ++k) {
+    sweep.over_particles([this, &scene, k, mass](Items some) { map(scene, k, mass, some); });
+    sweep.over_nodes([this, &scene, k, &faces, &target](Items some) { collect(scene, k, faces, target, some); });
+  }
+}
+
+/// From u_{k-1} to the tiles of u_k.
+template <int Dim>
+void VelocityFilter<Dim>::map(Scene<Dim>& scene, int k, ColumnId mass, Items some) {
+  const auto timing = scene.clock.time(Stage::gather);
+  NodeFields<Dim>& from = nodes_[static_cast<std::size_t>(k % 2)];
+  NodeFields<Dim>& to = nodes_[static_cast<std::size_t>(1 - k % 2)];
+  const double* const masses = scene.particles.columns.data(mass);
+  const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
+    from.load_motion(scene.blocks, b, work.motion_tile.data());
+    scene.shape->map_again(scene.view(block), masses, work.motion_tile.data(), to.momentum_tile(b));
+  };
+  for_each_block(scene, workspaces_, body, some);
+}
+
+template <int Dim>
+void VelocityFilter<Dim>::collect(Scene<Dim>& scene, int k, const Faces<Dim>& faces, NodeFields<Dim>& target,
+                                  Items some) {
+  const auto timing = scene.clock.time(Stage::nodes);
+  constexpr int lanes = motion_lanes<Dim>, change = Dim == 2 ? 2 : 4;
+  const int m = scene.scheme.xpic_order;
+  const double share = coefficient(m, k), first = coefficient(m, 1) - 1;
+  NodeFields<Dim>& nodes = nodes_[static_cast<std::size_t>(1 - k % 2)];
+  parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
+    const auto& block = scene.blocks.node_blocks()[b];
+    nodes.collect_momentum(scene.blocks, b);
+    divide_by_mass<Dim>(block, nodes.momentum(b), nodes.motion(b));
+    faces.fix(block, nodes.motion(b));
+    const auto* const u = reinterpret_cast<const double*>(nodes.motion(b));
+    const auto* const u_1 = reinterpret_cast<const double*>(nodes_[0].motion(b));  // at k = 2
+    auto* const sum = reinterpret_cast<double*>(target.motion(b)) + change;
+    for (std::size_t n = 0; n < block_nodes<Dim>; ++n)
+      for (std::size_t a = 0; a < Dim; ++a) {
+        const std::size_t at = n * lanes * lane_width + a;
+        sum[at] = (k == 2 ? first * u_1[at] : sum[at]) + share * u[at];
+      }
+  });
+}
+
+template class VelocityFilter<2>;
+template class VelocityFilter<3>;
+
+}  // namespace sluice
