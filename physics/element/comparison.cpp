@@ -19,7 +19,7 @@ struct Extremes {
       difference = std::max(difference, std::abs(found[k] - expected[k]));
     }
   }
-  double ratio() const { return value > 0 ? difference / value : difference; }
+  double ratio() const { return value > 1e-8 ? difference / value : difference; }
 };
 
 }  // namespace

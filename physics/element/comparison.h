@@ -5,7 +5,8 @@
 
 namespace sluice::element {
 
-/// Largest differences over all rows, each over the largest value on the path.
+/// Largest differences over all rows, each over the largest value on the path; as it is where that is round-off, below
+/// 1e-8.
 struct Difference {
   double stress = 0, strain = 0, state = 0;
   double largest_stress = 0;  ///< [Pa]
