@@ -75,7 +75,9 @@ void expect_sequence_solved(LatticeProblem<Dim> problem, Options options) {
     const Vector values = problem.values(coefficients.at(step), 1e-3);
     const auto report = solver.solve(values, b, x);
     EXPECT_TRUE(report.converged);
-    EXPECT_LE(norm(residual(problem.pattern, values, x, b)), 1.001 * LaggedCholeskyOptions().relative_tolerance * norm(b)) << "step " << step;
+    EXPECT_LE(norm(residual(problem.pattern, values, x, b)),
+              1.001 * LaggedCholeskyOptions().relative_tolerance * norm(b))
+        << "step " << step;
     // The condition number is below 1e4, which turns the residual of 1e-10 into an error of 1e-6 at most.
     const Vector direct = solve_directly(problem.pattern, values, b);
     EXPECT_LT(difference(x, direct), 1e-6 * norm(direct)) << "step " << step;
@@ -139,7 +141,8 @@ TEST(LaggedCholesky, TakesNoHarmFromABadGuess) {
   for (const double guess : {1e20, std::numeric_limits<double>::quiet_NaN()}) {
     Vector x(b.size(), guess);
     EXPECT_TRUE(solver.solve(values, b, x).converged);
-    EXPECT_LE(norm(residual(problem.pattern, values, x, b)), 1.001 * LaggedCholeskyOptions().relative_tolerance * norm(b));
+    EXPECT_LE(norm(residual(problem.pattern, values, x, b)),
+              1.001 * LaggedCholeskyOptions().relative_tolerance * norm(b));
   }
   Vector x(b.size(), 1.0);
   solver.solve(values, Vector(b.size(), 0.0), x);
@@ -245,7 +248,8 @@ TEST(LaggedCholesky, FollowsAChangeOfPattern) {
     EXPECT_EQ(solver.statistics().unknowns, problem.size());
     Vector x(b.size(), 0.0);
     EXPECT_TRUE(solver.solve(values, b, x).factorized);
-    EXPECT_LE(norm(residual(problem.pattern, values, x, b)), 1.001 * LaggedCholeskyOptions().relative_tolerance * norm(b));
+    EXPECT_LE(norm(residual(problem.pattern, values, x, b)),
+              1.001 * LaggedCholeskyOptions().relative_tolerance * norm(b));
   }
 }
 
@@ -369,7 +373,8 @@ TEST(LaggedCholesky, SolvesWhatSinglePrecisionCannotHold) {
   const auto report = solver.solve(values, b, x);
   EXPECT_TRUE(report.converged);
   EXPECT_LE(report.iterations, 10);
-  EXPECT_LE(norm(residual(problem.pattern, values, x, b)), 1.001 * LaggedCholeskyOptions().relative_tolerance * norm(b));
+  EXPECT_LE(norm(residual(problem.pattern, values, x, b)),
+            1.001 * LaggedCholeskyOptions().relative_tolerance * norm(b));
 }
 
 // Seven digits of the factor, times the condition number of 1e3, leave three digits at least. Scaling the matrix by
