@@ -86,8 +86,9 @@ class Team {
   void serve(int thread) {
     for (std::uint32_t heard = 0;;) {
       wait_until(calls_, [heard](std::uint32_t calls) { return calls != heard; });
-      if (closing_) return;
+      // In this order: the last call closes, and who has heard it must not miss that.
       heard = calls_.load(std::memory_order_acquire);
+      if (closing_) return;
       work(heard, thread);
     }
   }
