@@ -146,9 +146,11 @@ namespace {
 const char* const summary =
     "Single-phase soil in total stresses, explicit in time: runout of dams and slopes, granular flow, undrained clay.";
 
+std::vector<FieldDoc> keys() { return {initial_stress_doc()}; }
+
 template <int Dim>
 bool register_module() {
-  return physics_registry<Dim>().add("total_stress", {summary, {}},
+  return physics_registry<Dim>().add("total_stress", {summary, keys},
                                      [](const Case& definition) -> std::unique_ptr<PhysicsModule<Dim>> {
                                        return std::make_unique<TotalStress<Dim>>(definition);
                                      });
