@@ -229,9 +229,10 @@ namespace {
 const char* const summary =
     "Single-phase soil in total stresses, explicit in time: runout of dams and slopes, granular flow, undrained clay.";
 
+std::vector<FieldDoc> keys() { return {initial_stress_doc(), surface_loads_doc()}; }
+
 template <int Dim>
 bool register_module() {
-  const auto keys = [] { return std::vector<FieldDoc>{surface_loads_doc()}; };
   return physics_registry<Dim>().add("total_stress", {summary, keys},
                                      [](const Case& definition) -> std::unique_ptr<PhysicsModule<Dim>> {
                                        return std::make_unique<TotalStress<Dim>>(definition);

@@ -341,7 +341,11 @@ const char* const summary =
     "by "
     "a semi-implicit projection. Consolidation, seepage, undrained failure and liquefaction.";
 
-std::vector<FieldDoc> keys() { return water_docs(); }
+std::vector<FieldDoc> keys() {
+  std::vector<FieldDoc> all{initial_stress_doc()};
+  for (FieldDoc& doc : water_docs()) all.push_back(std::move(doc));
+  return all;
+}
 
 const bool registered = physics_registry<2>().add("two_phase", {summary, keys}, [](const Case& definition) {
   return std::make_unique<TwoPhase<2>>(definition);

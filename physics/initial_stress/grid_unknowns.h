@@ -1,0 +1,81 @@
+/// What a static problem on the grid needs, with the particles as its quadrature points: numbers of the unknowns,
+/// particles in order of their cells, stencils.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numeric>
+#include <unordered_map>
+#include <vector>
+
+#include "core/simulation/scene.h"
+
+namespace sluice {
+
+/// Degrees of freedom: the components of the nodes that particles reach, from `first` on, less those that faces fix.
+template <int Dim>
+class Unknowns {
+ public:
+  explicit Unknowns(const Scene<Dim>& scene, int first = 0) : scene_(scene), first_(first) {}
+
+  /// The unknown of a node's component, or -1 if it is fixed. Numbers are given in order of first asking.
+  std::array<int, Dim> of(const Index<Dim>& node) {
+    std::int64_t key = 0;
+    for (int a = Dim - 1; a >= 0; --a) key = key * (std::int64_t{1} << 20) + node[a];
+    const auto [place, fresh] = numbers_.try_emplace(key);
+    if (fresh)
+      for (int a = 0; a < Dim; ++a)
+        place->second[static_cast<std::size_t>(a)] = fixed(node, a) || a < first_ ? -1 : count_++;
+    return place->second;
+  }
+  int count() const { return count_; }
+
+ private:
+  bool fixed(const Index<Dim>& node, int component) const {
+    for (int axis = 0; axis < Dim; ++axis)
+      for (int side = 0; side < 2; ++side) {
+        const FaceCase& face = scene_.faces.face(axis, side);
+        if (node[axis] != scene_.faces.wall_node(axis, side) || face.normal == FaceCase::Normal::free) continue;
+        if (component == axis || face.tangential != FaceCase::Tangential::free) return true;
+      }
+    return false;
+  }
+
+  const Scene<Dim>& scene_;
+  int first_;
+  std::unordered_map<std::int64_t, std::array<int, Dim>> numbers_;
+  int count_ = 0;
+};
+
+/// Particles in order of their cells: those of a cell share their nodes, so their stiffness is summed
+/// densely first.
+template <int Dim>
+std::vector<std::uint32_t> by_cell(const Scene<Dim>& scene, std::vector<std::int64_t>& cell) {
+  const Particles& ps = scene.particles;
+  cell.resize(ps.size());
+  for (std::size_t p = 0; p < ps.size(); ++p) {
+    Vector<Dim> x;
+    for (int a = 0; a < Dim; ++a) x[a] = ps.columns.data(ps.position, a)[p];
+    const Index<Dim> c = scene.grid.cell_of(x);
+    cell[p] = 0;
+    for (int a = Dim - 1; a >= 0; --a) cell[p] = cell[p] * scene.grid.cells[a] + c[a];
+  }
+  std::vector<std::uint32_t> order(ps.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) { return cell[p] < cell[q]; });
+  return order;
+}
+
+template <int Dim>
+Stencil<Dim> stencil_at(const Scene<Dim>& scene, std::size_t p) {
+  Vector<Dim> x;
+  for (int a = 0; a < Dim; ++a) x[a] = scene.particles.columns.data(scene.particles.position, a)[p];
+  std::array<double, domain_capacity<Dim>> domain{};
+  const auto components = static_cast<std::size_t>(scene.domain_components());
+  for (std::size_t c = 0; c < components; ++c)
+    domain[c] = scene.particles.columns.data(scene.domain, static_cast<int>(c))[p];
+  return scene.shape->stencil(scene.grid, x, {domain.data(), components});
+}
+
+}  // namespace sluice
