@@ -49,5 +49,15 @@ TEST(Parallel, LoopsInCloseOrderDoNotMix) {
   EXPECT_EQ(total, expected);
 }
 
+// A team ends right after a loop, while members still hear of that loop: one that missed the end would never be joined.
+TEST(Parallel, TeamsEndWhileTheirMembersWakeUp) {
+  for (int team = 0; team < 3000; ++team) {
+    const Threads use(2 + team % 3);
+    int sum[3] = {};
+    parallel_for(3, [&](std::size_t i) { ++sum[i]; });
+    ASSERT_EQ(sum[0] + sum[1] + sum[2], 3);
+  }
+}
+
 }  // namespace
 }  // namespace sluice
