@@ -39,12 +39,11 @@ constexpr std::size_t worth_sharing = 2 * share_size;
 /// Calls body(begin, end, number of the share).
 template <class Body>
 void for_shares(std::size_t count, const Body& body) {
-  const std::size_t shares = (count + share_size - 1) / share_size;
-  const auto share = [&](std::size_t s) { body(s * share_size, std::min(count, (s + 1) * share_size), s); };
-  if (count < worth_sharing)
-    for (std::size_t s = 0; s < shares; ++s) share(s);
-  else
-    parallel_for(shares, share);
+  if (count >= worth_sharing) {
+    parallel_shares(count, share_size, body);
+    return;
+  }
+  for (std::size_t s = 0; s * share_size < count; ++s) body(s * share_size, std::min(count, (s + 1) * share_size), s);
 }
 
 /// Four sums instead of one, which the processor can form side by side; the order is fixed, and so are the bits.
@@ -230,7 +229,8 @@ double LaggedCholesky::distance() const {
 }
 
 bool LaggedCholesky::near_round_off() const {
-  return certain_.plain > allowed_.plain || certain_.scaled > allowed_.scaled || certain_.largest > allowed_.largest;
+  return round_off_.plain > allowed_.plain || round_off_.scaled > allowed_.scaled ||
+         round_off_.largest > allowed_.largest;
 }
 
 /// r = b - A x; returns the distance.
@@ -276,7 +276,7 @@ LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> valu
   const double tolerance = options_.relative_tolerance;
   // Some hundred times what an iteration or two add to the difference between the residual carried along and b - A x.
   constexpr double noise = 1e-13;
-  certain_ = {.plain = noise * size.plain, .scaled = noise * size.scaled, .largest = noise * size.largest};
+  round_off_ = {.plain = noise * size.plain, .scaled = noise * size.scaled, .largest = noise * size.largest};
   allowed_ = {.plain = tolerance * size.plain, .scaled = tolerance * size.scaled, .largest = largest_residual};
   Report report;
   double distance = start(values, b, size, x);

@@ -163,9 +163,9 @@ class LaggedCholesky {
   PackedFactor packed_;
   std::vector<double> factorized_values_;  // empty if there is no factor
   RenewalRule rule_;
-  Norms allowed_;  // in the current solve
-  Norms certain_;  // of what round-off adds to a residual
-  Norms norms_;    // of r_
+  Norms allowed_;    // in the current solve
+  Norms round_off_;  // of what round-off adds to a residual
+  Norms norms_;      // of r_
   FullRows rows_;
   std::vector<Sums> shares_;
   std::vector<double> inverse_diagonal_, r_, z_, p_, q_;

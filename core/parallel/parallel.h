@@ -61,4 +61,13 @@ void parallel_for(Items items, const Body& body) {
   });
 }
 
+/// Cuts items 0 … count-1 in shares of `size`, so that light items are worth a call, and calls body(begin, end, number
+/// of the share). Sums over a share that are added up in the order of the shares do not depend on the number of
+/// threads.
+template <class Body>
+void parallel_shares(std::size_t count, std::size_t size, const Body& body) {
+  parallel_for((count + size - 1) / size,
+               [&](std::size_t share) { body(share * size, std::min(count, (share + 1) * size), share); });
+}
+
 }  // namespace sluice

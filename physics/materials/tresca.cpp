@@ -43,25 +43,18 @@ namespace {
 class Tresca final : public UndrainedMaterial {
  public:
   using UndrainedMaterial::UndrainedMaterial;
-  void update(const MaterialBatch<2>& batch) const override { update_either(batch); }
-  void update(const MaterialBatch<3>& batch) const override { update_either(batch); }
+  void update(const MaterialBatch<2>& batch) const override { update_any(batch); }
+  void update(const MaterialBatch<3>& batch) const override { update_any(batch); }
 
  private:
   template <int Dim>
-  void update_either(const MaterialBatch<Dim>& batch) const {
-    if (tied()) {
-      remember_overburden(batch);
-      update_with(batch, strength_at<true>(batch.time));
-    } else {
-      update_with(batch, strength_at<false>(batch.time));
-    }
-  }
-  template <int Dim, bool Tied>
-  void update_with(const MaterialBatch<Dim>& batch, const UndrainedStrength<Tied>& strength) const {
-    if (keys_.tension_cutoff)
-      update_tresca<true>(batch, elasticity_, strength, *keys_.tension_cutoff);
-    else
-      update_tresca<false>(batch, elasticity_, strength, std::numeric_limits<double>::infinity());
+  void update_any(const MaterialBatch<Dim>& batch) const {
+    with_strength(batch, [&](const auto& strength) {
+      if (keys_.tension_cutoff)
+        update_tresca<true>(batch, elasticity_, strength, *keys_.tension_cutoff);
+      else
+        update_tresca<false>(batch, elasticity_, strength, std::numeric_limits<double>::infinity());
+    });
   }
 };
 

@@ -65,6 +65,24 @@ class UndrainedMaterial : public Material {
   void set_cell_size(double h) override;
 
  protected:
+  /// Calls update(strength at the time of the batch), the strength of the kind that the keys ask for; points that come
+  /// for the first time have remembered their overburden by then.
+  template <int Dim, class Update>
+  void with_strength(const MaterialBatch<Dim>& batch, const Update& update) const {
+    if (tied()) {
+      remember_overburden(batch);
+      update(strength_at<true>(batch.time));
+    } else {
+      update(strength_at<false>(batch.time));
+    }
+  }
+
+  UndrainedKeys keys_;
+  IsotropicElasticity elasticity_;
+  double residual_share_ = 1;
+  Softening softening_;
+
+ private:
   bool tied() const { return keys_.strength_ratio.has_value(); }
   template <bool Tied>
   UndrainedStrength<Tied> strength_at(double time) const {
@@ -79,11 +97,6 @@ class UndrainedMaterial : public Material {
   /// vertical one.
   template <int Dim>
   static void remember_overburden(const MaterialBatch<Dim>& batch);
-
-  UndrainedKeys keys_;
-  IsotropicElasticity elasticity_;
-  double residual_share_ = 1;
-  Softening softening_;
 };
 
 }  // namespace sluice

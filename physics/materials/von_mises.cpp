@@ -54,18 +54,13 @@ namespace {
 class VonMises final : public UndrainedMaterial {
  public:
   using UndrainedMaterial::UndrainedMaterial;
-  void update(const MaterialBatch<2>& batch) const override { update_either(batch); }
-  void update(const MaterialBatch<3>& batch) const override { update_either(batch); }
+  void update(const MaterialBatch<2>& batch) const override { update_any(batch); }
+  void update(const MaterialBatch<3>& batch) const override { update_any(batch); }
 
  private:
   template <int Dim>
-  void update_either(const MaterialBatch<Dim>& batch) const {
-    if (tied()) {
-      remember_overburden(batch);
-      update_von_mises(batch, elasticity_, strength_at<true>(batch.time));
-    } else {
-      update_von_mises(batch, elasticity_, strength_at<false>(batch.time));
-    }
+  void update_any(const MaterialBatch<Dim>& batch) const {
+    with_strength(batch, [&](const auto& strength) { update_von_mises(batch, elasticity_, strength); });
   }
 };
 

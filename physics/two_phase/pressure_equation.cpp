@@ -25,17 +25,10 @@ constexpr double least_continued_share = 0.25;
 constexpr double volume_tolerance = 1e-9;
 constexpr std::size_t items_a_share = 256;
 
-/// Calls body(begin, end) for shares of count items, in parallel.
-template <class Body>
-void parallel_ranges(std::size_t count, const Body& body) {
-  parallel_for((count + items_a_share - 1) / items_a_share,
-               [&](std::size_t share) { body(share * items_a_share, std::min(count, (share + 1) * items_a_share)); });
-}
-
 /// Calls body(i) for i < count in parallel, in shares of many items.
 template <class Body>
-void parallel_shares(std::size_t count, const Body& body) {
-  parallel_ranges(count, [&](std::size_t begin, std::size_t end) {
+void parallel_items(std::size_t count, const Body& body) {
+  parallel_shares(count, items_a_share, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
 }
@@ -142,7 +135,7 @@ SLUICE_ALWAYS_INLINE void for_entries(const std::array<std::int32_t, Most>& entr
 template <int Dim>
 void PressureEquation<Dim>::sum_cells() {
   sums_.resize(grid_.cells().size());
-  parallel_shares(sums_.size(), [&](std::size_t c) {
+  parallel_items(sums_.size(), [&](std::size_t c) {
     CellSums<Dim> sum;
     for_entries(grid_.cell_entries(c), [&](std::size_t at) { sum.add(cell_sums_[at]); });
     sums_[c] = sum;
@@ -205,9 +198,9 @@ typename PressureEquation<Dim>::StepConstants PressureEquation<Dim>::constants(c
 }
 
 template <int Dim>
-SLUICE_MULTITARGET void PressureEquation<Dim>::set_states(const CellSums<Dim>* sums, const StepConstants& step,
-                                                          std::size_t begin, std::size_t end) {
-  for (std::size_t c = begin; c < end; ++c) cells_[c] = cell_state(sums[c], step);
+SLUICE_MULTITARGET void PressureEquation<Dim>::set_states(const StepConstants& step, std::size_t begin,
+                                                          std::size_t end) {
+  for (std::size_t c = begin; c < end; ++c) cells_[c] = cell_state(sums_[c], step);
 }
 
 /// A cell with little or no water beside a vertex that is inside takes the coefficients of the cells around it.
@@ -216,8 +209,8 @@ void PressureEquation<Dim>::set_cells(const PressureStep& step) {
   const double least = least_fill * geometry_.cell_volume();
   const StepConstants of_step = constants(step);
   cells_.resize(sums_.size());
-  parallel_ranges(cells_.size(), [&](std::size_t begin, std::size_t end) {
-    set_states(sums_.data(), of_step, begin, end);
+  parallel_shares(cells_.size(), items_a_share, [&](std::size_t begin, std::size_t end, std::size_t) {
+    set_states(of_step, begin, end);
     for (std::size_t c = begin; c < end; ++c) {
       if (sums_[c].volume >= least) continue;
       CellSums<Dim> sums = sums_[c];
@@ -244,7 +237,7 @@ void PressureEquation<Dim>::classify(const PressureStep& step) {
   const double g = unit_weight_;
   fill_.resize(count), kind_.resize(count), given_.resize(count), old_.resize(count), pressure_.resize(count);
   lanes_.resize(count);
-  parallel_shares(count, [&](std::size_t v) {
+  parallel_items(count, [&](std::size_t v) {
     const auto& vertex = grid_.vertices()[v];
     lanes_[v] = vertex_sum(v);
     const double volume = lanes_[v][0];
@@ -452,7 +445,8 @@ void PressureEquation<Dim>::assemble(const ExternalPressure<Dim>& outside, const
   const std::size_t count = grid_.vertices().size();
   values_.resize(grid_.pattern().row.size());
   right_side_.resize(count);
-  parallel_ranges(count, [&](std::size_t begin, std::size_t end) { write_rows(begin, end, outside, step.time); });
+  parallel_shares(count, items_a_share,
+                  [&](std::size_t begin, std::size_t end, std::size_t) { write_rows(begin, end, outside, step.time); });
 }
 
 template <int Dim>
@@ -554,7 +548,7 @@ double PressureEquation<Dim>::continuation(std::size_t i, std::size_t j, std::si
 /// Vertices outside continue the pressure through the surface, the mean over the lines that reach them.
 template <int Dim>
 void PressureEquation<Dim>::extrapolate(const ExternalPressure<Dim>& outside, double time) {
-  parallel_shares(kind_.size(), [&](std::size_t j) {
+  parallel_items(kind_.size(), [&](std::size_t j) {
     if (kind_[j] != Kind::outside) return;
     const auto& vertex = grid_.vertices()[j];
     const double all_lines = line_weights(j);

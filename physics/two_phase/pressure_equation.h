@@ -98,7 +98,7 @@ class PressureEquation {
   void sum_cells();
   Lane vertex_sum(std::size_t v) const;
   void set_cells(const PressureStep& step);
-  void set_states(const CellSums<Dim>* sums, const StepConstants& step, std::size_t begin, std::size_t end);
+  void set_states(const StepConstants& step, std::size_t begin, std::size_t end);
   StepConstants constants(const PressureStep& step) const;
   CellState cell_state(const CellSums<Dim>& sums, const StepConstants& step) const;
   void classify(const PressureStep& step);
