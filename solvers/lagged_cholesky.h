@@ -52,7 +52,7 @@ struct LaggedCholeskyOptions {
   Ordering ordering = Ordering::measured;
   Choice choice = Choice::counted;
   int blas_threads = 1;  ///< as in SparseCholeskyOptions
-  double relative_tolerance = 1e-6;
+  double relative_tolerance = 1e-9;
   int most_iterations = 100;  ///< with a lagged factor; then it is renewed
 };
 
