@@ -9,6 +9,7 @@
 #include "core/grid/faces.h"
 #include "core/grid/geometry.h"
 #include "core/grid/nodes.h"
+#include "core/grid/obstacles.h"
 #include "core/particles/particles.h"
 #include "core/simulation/stage_clock.h"
 #include "core/transfer/shape_kernels.h"
@@ -26,11 +27,14 @@ struct Scene {
   TransferScheme transfer;
   SchemeCase scheme;
   Faces<Dim> faces;
+  Obstacles<Dim> obstacles;
   Particles particles;
-  ColumnId affine;  ///< C of APIC [1/s], declared when the transfer is affine
-  ColumnId domain;  ///< what part of space a particle stands for; declared when the shape functions ask for it
+  ColumnId affine;         ///< C of APIC [1/s], declared when the transfer is affine
+  ColumnId domain;         ///< what part of space a particle stands for; declared when the shape functions ask for it
+  ColumnId unit_pressure;  ///< declared where something adheres
   Blocks<Dim> blocks;
   NodeFields<Dim> nodes;
+  NodeFields<Dim> surface;  ///< area of the surface of the material by node, its forces; only where something adheres
 
   double time = 0;         ///< [s]
   std::int64_t step = 0;   ///< steps completed
@@ -46,6 +50,12 @@ struct Scene {
 
   /// Called once, when all bodies are filled: the domains of the particles.
   void initialise_domains();
+  /// Makes room for the fields of the nodes of the active blocks.
+  void resize_nodes();
+  /// Faces and obstacles take their places and velocities for a step of length dt.
+  void move_boundaries(double dt);
+  bool any_friction() const { return faces.any_friction() || obstacles.any_friction(); }
+  bool any_adhesion() const { return faces.any_adhesion() || obstacles.any_adhesion(); }
 
   BlockParticles<Dim> view(const ParticleBlock<Dim>& block) const;
   /// The affine columns are null when the transfer is not affine.

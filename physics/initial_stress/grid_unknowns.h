@@ -13,7 +13,8 @@
 
 namespace sluice {
 
-/// Degrees of freedom: the components of the nodes that particles reach, from `first` on, less those that faces fix.
+/// Degrees of freedom: the components of the nodes that particles reach, from `first` on, less those that faces and
+/// obstacles fix.
 template <int Dim>
 class Unknowns {
  public:
@@ -39,7 +40,7 @@ class Unknowns {
         if (node[axis] != scene_.faces.wall_node(axis, side) || face.normal == FaceCase::Normal::free) continue;
         if (component == axis || face.tangential != FaceCase::Tangential::free) return true;
       }
-    return false;
+    return scene_.obstacles.any() && scene_.obstacles.holds(node, component);
   }
 
   const Scene<Dim>& scene_;

@@ -116,11 +116,12 @@ void TotalStress<Dim>::step_usf(Scene<Dim>& scene, double dt) {
       };
       for_each_block(scene, stress_.workspaces(), body, some);
     });
-  sweep.over_nodes([&](Items some) { velocity_from_momentum(scene, some); });
+  sweep.over_nodes([&](Items some) { velocity_from_momentum(scene, Moment::before, some); });
   stress_.update(sweep, scene, scene.previous_dt, [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
     pressed_.add_work(scene, b, block);  // that of the volumes
     scatter_forces(scene, b, block, work, ScatterWhat::force);
   });
+  if (scene.any_adhesion()) sweep.over_particles([&](Items some) { scatter_surface(scene, some); });
   sweep.over_nodes([&](Items some) { advance_nodes(scene, scene.kick(dt), false, true, some, loads_alone(scene)); });
   stress_.gather_motion(sweep, scene, dt);
   add_load_work(sweep, scene);
@@ -152,6 +153,7 @@ void TotalStress<Dim>::step_musl(Scene<Dim>& scene, double dt) {
 template <int Dim>
 void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
   const double kick = scene.kick(dt);
+  if (scene.any_adhesion()) sweep.over_particles([&scene](Items some) { scatter_surface(scene, some); });
   if (outside_.any()) {
     sweep.over_particles([this, &scene](Items some) {
       const auto timing = scene.clock.time(Stage::scatter);
