@@ -29,6 +29,12 @@ struct BodyCase {
   Place place;                        ///< where the body stands in the case file
 };
 
+/// What lies beyond a face that lets waves out.
+struct AbsorbingCase {
+  double density = 0;             ///< [kg/m3]
+  double p_wave = 0, s_wave = 0;  ///< speeds [m/s]
+};
+
 /// What a face of the grid, or the surface of an obstacle, does to the material that reaches it.
 struct FaceCase {
   enum class Normal {
@@ -39,9 +45,10 @@ struct FaceCase {
   enum class Tangential { free, fixed, friction };
   Normal normal = Normal::free;
   Tangential tangential = Tangential::free;
-  double friction = 0;               ///< Coulomb coefficient, used where tangential is `friction`
-  double adhesion = 0;               ///< shear traction that needs no pressure [Pa], likewise
-  std::vector<Table> velocity = {};  ///< of the face [m/s], Dim components; empty: at rest
+  double friction = 0;                          ///< Coulomb coefficient, used where tangential is `friction`
+  double adhesion = 0;                          ///< shear traction that needs no pressure [Pa], likewise
+  std::vector<Table> velocity = {};             ///< of the face [m/s], Dim components; empty: at rest
+  std::optional<AbsorbingCase> absorbing = {};  ///< then it is free otherwise; faces only
 };
 
 /// A rigid region inside the grid that keeps material out.

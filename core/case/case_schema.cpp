@@ -74,6 +74,7 @@ struct FaceKeys {
   std::optional<std::string> tangential;
   std::optional<double> friction, adhesion;
   std::vector<Table> velocity;
+  std::optional<AbsorbingCase> absorbing;
 };
 
 using NormalWords = std::vector<std::pair<std::string, FaceCase::Normal>>;
@@ -144,10 +145,22 @@ Schema<T>& with_surface(Schema<T>& schema, const NormalWords& words, FaceCase::N
           [](const T& keys) { return write_velocity(keys.velocity); });
 }
 
+Schema<AbsorbingCase> absorbing_schema() {
+  return Schema<AbsorbingCase>("absorbing")
+      .quantity("density", &AbsorbingCase::density, unit::density, above(0), "Density beyond the face.")
+      .quantity("p_wave", &AbsorbingCase::p_wave, unit::velocity, above(0), "Speed of compression waves.")
+      .quantity("s_wave", &AbsorbingCase::s_wave, unit::velocity, at_least(0), "Speed of shear waves.");
+}
+
 Schema<FaceKeys> face_schema() {
   auto schema = Schema<FaceKeys>("face");
   return with_surface(schema, normal_words(), FaceCase::Normal::free,
-                      "Motion through the face: free, none, or none but away from it.");
+                      "Motion through the face: free, none, or none but away from it.")
+      .section(
+          "absorbing", &FaceKeys::absorbing, absorbing_schema(),
+          "Dashpots that let waves out, as if the material went on beyond the face; goes with no other key. The face "
+          "keeps the traction that it has at the start.",
+          Absent{"none"});
 }
 
 const std::vector<std::string> face_shorthands{"free", "roller", "fixed"};
@@ -160,6 +173,14 @@ FaceCase surface_of(const FaceKeys& keys, const Node& node, const std::string& n
   face.friction = keys.friction.value_or(0);
   face.adhesion = keys.adhesion.value_or(0);
   face.velocity = keys.velocity;
+  face.absorbing = keys.absorbing;
+  if (const Node* const absorbing = node.find("absorbing")) {
+    if (node.items.size() > 1)
+      problems.add(absorbing->place, fmt::format("{}: absorbing goes with no other key", name));
+    if (keys.absorbing && keys.absorbing->s_wave >= keys.absorbing->p_wave)
+      problems.add(absorbing->place, fmt::format("{}: absorbing: s_wave must be below p_wave", name));
+    return face;
+  }
   const bool rough = keys.friction || keys.adhesion;
   if (rough)
     face.tangential = Tangential::friction;
@@ -210,6 +231,10 @@ void read_faces(Case& definition, const Node& node, Problems& problems) {
 
 /// Adds the keys that give this surface.
 void write_surface(const FaceCase& face, Node& keys) {
+  if (face.absorbing) {
+    keys.set("absorbing", absorbing_schema().write(*face.absorbing));
+    return;
+  }
   keys.set("normal", Node::text(word_of(face.normal)));
   if (face.tangential == FaceCase::Tangential::friction) {
     keys.set("friction", value::from_quantity(face.friction, unit::none));

@@ -15,6 +15,7 @@ template <int Dim>
 struct NodeMotion {
   Lane* lanes;
   double v(int a) const { return lanes[0][a]; }
+  double change(int a) const { return Dim == 2 ? lanes[0][2 + a] : lanes[Dim - 2][a]; }
   Vector<Dim> velocity() const {
     Vector<Dim> all;
     for (int a = 0; a < Dim; ++a) all[a] = v(a);

@@ -68,15 +68,26 @@ SignedDistance Obstacles<Dim>::where(const Obstacle& obstacle, Vector<Dim> x) co
   return obstacle.definition.region.signed_distance(x);
 }
 
+/// The nodes [first, second) of the grid that a block has, and that particles reach. The margins of tiles go beyond it.
+template <int Dim>
+std::array<Index<Dim>, 2> Obstacles<Dim>::range(const NodeBlock<Dim>& nodes) const {
+  std::array<Index<Dim>, 2> range;
+  for (int a = 0; a < Dim; ++a) {
+    range[0][a] = std::max(0, nodes.first_node[a] + nodes.low[a]);
+    range[1][a] = std::min(static_cast<int>(places_[a].size()), nodes.first_node[a] + nodes.high[a]);
+  }
+  return range;
+}
+
 /// Whether the box around an obstacle, wider by `margin`, reaches the nodes of a block.
 template <int Dim>
 bool Obstacles<Dim>::near(const Obstacle& obstacle, const NodeBlock<Dim>& nodes, const Vector<Dim>& margin) const {
+  const auto [low, high] = range(nodes);
   for (int a = 0; a < Dim; ++a) {
-    if (nodes.low[a] >= nodes.high[a]) return false;
+    if (low[a] >= high[a]) return false;
     const auto axis = static_cast<std::size_t>(a);
-    const double first = places_[a][static_cast<std::size_t>(nodes.first_node[a] + nodes.low[a])] - obstacle.travel[a];
-    const double last =
-        places_[a][static_cast<std::size_t>(nodes.first_node[a] + nodes.high[a] - 1)] - obstacle.travel[a];
+    const double first = places_[a][static_cast<std::size_t>(low[a])] - obstacle.travel[a];
+    const double last = places_[a][static_cast<std::size_t>(high[a] - 1)] - obstacle.travel[a];
     if (last < obstacle.bounds[0][axis] - margin[a] || first > obstacle.bounds[1][axis] + margin[a]) return false;
   }
   return true;
@@ -102,13 +113,13 @@ void Obstacles<Dim>::find(const NodeBlock<Dim>& nodes, std::size_t number, std::
   Vector<Dim> margin = support_;
   if (!adheres) margin.fill(hair_);
   if (!near(obstacle, nodes, margin)) return;
+  const auto [low, high] = range(nodes);
   for (int n = 0; n < block_nodes<Dim>; ++n) {
     Index<Dim> node;
     bool reached = true;
     for (int a = 0, rest = n; a < Dim; ++a, rest /= width) {
-      const int i = rest % width;
-      reached = reached && i >= nodes.low[a] && i < nodes.high[a];
-      node[a] = nodes.first_node[a] + i;
+      node[a] = nodes.first_node[a] + rest % width;
+      reached = reached && node[a] >= low[a] && node[a] < high[a];
     }
     if (!reached) continue;
     const SignedDistance found = where(obstacle, place(node));

@@ -70,6 +70,7 @@ class Obstacles {
   const std::vector<Contact>& contacts(const NodeBlock<Dim>& nodes, std::size_t block);
   void find(const NodeBlock<Dim>& nodes, std::size_t number, std::vector<Contact>& contacts) const;
   bool near(const Obstacle& obstacle, const NodeBlock<Dim>& nodes, const Vector<Dim>& margin) const;
+  std::array<Index<Dim>, 2> range(const NodeBlock<Dim>& nodes) const;
   Vector<Dim> place(const Index<Dim>& node) const;
   SignedDistance where(const Obstacle& obstacle, Vector<Dim> x) const;
 

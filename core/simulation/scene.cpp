@@ -38,13 +38,14 @@ Scene<Dim>::Scene(const Case& definition)
       transfer(transfer_registry().find(definition.scheme.transfer, definition.source.place)),
       scheme(definition.scheme),
       faces(definition.faces, grid, shape->reach(), shape->outside()),
+      dashpots(faces, grid, shape->reach()),
       obstacles(definition.obstacles, node_places<Dim>(*shape, grid), 0.5 * (shape->reach() + 1)),
       particles(Dim) {
   for (std::size_t a = 0; a < Dim; ++a) gravity[a] = definition.gravity.empty() ? 0 : definition.gravity[a];
   if (transfer.affine)
     affine = particles.columns.declare({"affine_velocity", "1/s", Dim * Dim, Role::state,
                                         "Affine velocity field, row by row: component, direction.", false});
-  if (any_adhesion())
+  if (wants_area())
     unit_pressure = particles.columns.declare(
         {"unit_pressure", "1", 2, Role::derived, "Ones and zeros: a stress of one, and none.", false});
   if (const ColumnSpec spec = shape->domain(); spec.components > 0) domain = particles.columns.declare(spec);
@@ -66,7 +67,7 @@ void Scene<Dim>::initialise_domains() {
 template <int Dim>
 void Scene<Dim>::resize_nodes() {
   nodes.resize(blocks, shape->reach());
-  if (any_adhesion()) {
+  if (wants_area()) {
     surface.resize(blocks, shape->reach());
     std::fill_n(particles.columns.data(unit_pressure, 0), particles.size(), 1.0);
     std::fill_n(particles.columns.data(unit_pressure, 1), particles.size(), 0.0);

@@ -99,6 +99,7 @@ class SimulationOf final : public Simulation {
                              scene_.motion.largest_speed_squared,
                              scene_.motion.largest_strain_rate,
                              longest_dt_};
+    if (scene_.dashpots.any()) archive.reals["dashpots"] = scene_.dashpots.record();
     module_->store(archive);
   }
 
@@ -117,6 +118,7 @@ class SimulationOf final : public Simulation {
     scene_.motion.largest_speed_squared = loop[3];
     scene_.motion.largest_strain_rate = loop[4];
     longest_dt_ = loop.at(5);
+    if (scene_.dashpots.any()) scene_.dashpots.restore(archive.reals.at("dashpots"));
     module_->restore(archive);
   }
 

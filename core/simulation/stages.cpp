@@ -138,7 +138,8 @@ void impose_boundaries(Scene<Dim>& scene, std::size_t b, double kick, double lig
     return out.data();
   };
   if (without_friction != nullptr) beside.relief = take(*without_friction, 1, relief);
-  if (scene.any_adhesion()) beside.area = take(scene.surface, -1, area);
+  if (scene.wants_area()) beside.area = take(scene.surface, -1, area);
+  scene.dashpots.impose(block, scene.nodes.motion(b), beside.area, kick, scene.step == 0);
   scene.obstacles.fix_with_friction(block, b, momentum, scene.nodes.motion(b), beside, kick);
   scene.faces.fix_with_friction(block, scene.nodes.motion(b), beside);
 }

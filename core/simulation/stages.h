@@ -40,7 +40,7 @@ template <int Dim>
 void velocity_from_momentum(Scene<Dim>& scene, Moment moment, Items some = everything);
 
 /// The area of the surface of the material, by node and with its normal, eq. (18b): to be called with every scatter of
-/// forces in a scene where something adheres.
+/// forces in a scene that wants it.
 template <int Dim>
 void scatter_surface(Scene<Dim>& scene, Items some = everything);
 

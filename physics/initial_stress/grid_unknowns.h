@@ -37,7 +37,8 @@ class Unknowns {
     for (int axis = 0; axis < Dim; ++axis)
       for (int side = 0; side < 2; ++side) {
         const FaceCase& face = scene_.faces.face(axis, side);
-        if (node[axis] != scene_.faces.wall_node(axis, side) || face.normal == FaceCase::Normal::free) continue;
+        const bool free = face.normal == FaceCase::Normal::free && !face.absorbing;
+        if (node[axis] != scene_.faces.wall_node(axis, side) || free) continue;
         if (component == axis || face.tangential != FaceCase::Tangential::free) return true;
       }
     return scene_.obstacles.any() && scene_.obstacles.holds(node, component);

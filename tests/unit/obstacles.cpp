@@ -129,6 +129,17 @@ TEST(CaseFaces, SayWhatIsWrong) {
             "c.yaml:8:46: boundaries.left: adhesion contradicts `tangential: fixed`; leave out one of them");
 }
 
+TEST(CaseFaces, SayWhatIsWrongWithDashpots) {
+  const std::string good = "density: 2000 kg/m3, p_wave: 300 m/s, s_wave: 150 m/s";
+  EXPECT_EQ(message("boundaries: {left: {absorbing: {" + good + "}}}\n"), "");
+  EXPECT_EQ(message("boundaries: {left: {absorbing: {" + good + "}, friction: 0.3}}\n"),
+            "c.yaml:8:32: boundaries.left: absorbing goes with no other key");
+  EXPECT_EQ(message("boundaries: {left: {absorbing: {density: 2000 kg/m3, p_wave: 300 m/s, s_wave: 400 m/s}}}\n"),
+            "c.yaml:8:32: boundaries.left: absorbing: s_wave must be below p_wave");
+  EXPECT_EQ(message("boundaries: {left: {absorbing: {density: 2000 kg/m3, p_wave: 300 m/s}}}\n"),
+            "c.yaml:8:32: absorbing: the key 's_wave' is missing (number in m/s, at least 0): Speed of shear waves.");
+}
+
 /// The motion of one node on the bottom of a grid after the face has acted.
 Vector<2> moved(const FaceCase& bottom, const Vector<2>& velocity, Moment moment) {
   GridGeometry<2> g;
