@@ -73,7 +73,7 @@ void StressUpdate<Dim>::gather_motion_and_map_again(Sweep<Dim>& sweep, Scene<Dim
   filter_.add(sweep, scene);
   sweep.over_particles([this, &scene, dt](Items some) { move(scene, dt, next_position_, some); });
   sweep.over_particles([&scene](Items some) { scatter(scene, ScatterWhat::momentum, 0, some); });
-  sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, some); });
+  sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, Moment::now, some); });
   update(sweep, scene, dt);
   sweep.over_particles([this, &scene](Items some) { take_next_position(scene, some); });
 }
