@@ -31,6 +31,10 @@ Scene<Dim>::Scene(const Case& definition)
   if (transfer.affine)
     affine = particles.columns.declare({"affine_velocity", "1/s", Dim * Dim, Role::state,
                                         "Affine velocity field, row by row: component, direction.", false});
+  if (transfer.affine && !transfer.gradient && !shape->takes_moments())
+    throw CaseError(definition.source.place, "scheme: transfer '" + scheme.transfer +
+                                                 "' needs moments of the shape functions, which shape '" +
+                                                 scheme.shape + "' does not have; take tpic, xpic or flip");
   if (const ColumnSpec spec = shape->domain(); spec.components > 0) domain = particles.columns.declare(spec);
 }
 

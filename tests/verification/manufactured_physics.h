@@ -106,7 +106,7 @@ class ManufacturedPhysics final : public PhysicsModule<Dim> {
   }
 
   void gather(Scene<Dim>& scene, double dt) {
-    const MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position);
+    const MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position, scene.domain);
     std::vector<MotionReport> reports(scene.blocks.particle_blocks().size());
     for_each_block(scene, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
       scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
