@@ -65,7 +65,7 @@ void TotalStress<Dim>::initialise(Scene<Dim>& scene) {
     std::fill_n(push, scene.particles.size(), 0.0);
     loads = pressed_.at_rest(scene, outside_, stress_.workspaces(), push);
   }
-  apply_initial_stress(initial_stress_, scene, stress_.materials(), loads);
+  apply_initial_stress(initial_stress_, scene, stress_, loads);
   stress_.initialise(scene);
 }
 

@@ -21,17 +21,28 @@ class Unknowns {
 
   /// The unknown of a node's component, or -1 if it is fixed. Numbers are given in order of first asking.
   std::array<int, Dim> of(const Index<Dim>& node) {
-    std::int64_t key = 0;
-    for (int a = Dim - 1; a >= 0; --a) key = key * (std::int64_t{1} << 20) + node[a];
-    const auto [place, fresh] = numbers_.try_emplace(key);
+    const auto [place, fresh] = numbers_.try_emplace(key_of(node));
     if (fresh)
       for (int a = 0; a < Dim; ++a)
         place->second[static_cast<std::size_t>(a)] = fixed(node, a) || a < first_ ? -1 : count_++;
     return place->second;
   }
+  /// The same for a node that may not have been asked for: -1 then.
+  std::array<int, Dim> find(const Index<Dim>& node) const {
+    const auto place = numbers_.find(key_of(node));
+    if (place != numbers_.end()) return place->second;
+    std::array<int, Dim> none;
+    none.fill(-1);
+    return none;
+  }
   int count() const { return count_; }
 
  private:
+  static std::int64_t key_of(const Index<Dim>& node) {
+    std::int64_t key = 0;
+    for (int a = Dim - 1; a >= 0; --a) key = key * (std::int64_t{1} << 20) + node[a];
+    return key;
+  }
   bool fixed(const Index<Dim>& node, int component) const {
     for (int axis = 0; axis < Dim; ++axis)
       for (int side = 0; side < 2; ++side) {
