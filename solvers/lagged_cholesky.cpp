@@ -141,6 +141,7 @@ void LaggedCholesky::use(Options::Ordering ordering, SparseCholesky cholesky) {
   for (auto* vector : {&inverse_diagonal_, &r_, &z_, &p_, &q_})
     vector->resize(static_cast<std::size_t>(pattern.size()));
   shares_.resize((r_.size() + share_size - 1) / share_size);
+  sizes_.resize(shares_.size());
   statistics_.unknowns = pattern.size();
   statistics_.matrix_nonzeros = static_cast<std::int64_t>(pattern.row.size());
   statistics_.factor_nonzeros = cholesky_.statistics().factor_nonzeros;
@@ -209,6 +210,15 @@ LaggedCholesky::Sums LaggedCholesky::sums(std::span<const double> r, std::size_t
   return {sum(plain), sum(scaled), *std::max_element(largest.begin(), largest.end())};
 }
 
+LaggedCholesky::Norms LaggedCholesky::added_up(const std::vector<Sums>& shares) {
+  Sums all;
+  for (const Sums& share : shares) {
+    all.plain += share.plain, all.scaled += share.scaled;
+    all.largest = std::max(all.largest, share.largest);
+  }
+  return {std::sqrt(all.plain), std::sqrt(all.scaled), all.largest};
+}
+
 /// Calls body(begin, end) for all shares of the unknowns, and returns the norms of `r` after it.
 template <class Body>
 LaggedCholesky::Norms LaggedCholesky::norms_after(std::span<const double> r, const Body& body) {
@@ -216,12 +226,7 @@ LaggedCholesky::Norms LaggedCholesky::norms_after(std::span<const double> r, con
     body(begin, end);
     shares_[share] = sums(r, begin, end);
   });
-  Sums all;
-  for (const Sums& share : shares_) {
-    all.plain += share.plain, all.scaled += share.scaled;
-    all.largest = std::max(all.largest, share.largest);
-  }
-  return {std::sqrt(all.plain), std::sqrt(all.scaled), all.largest};
+  return added_up(shares_);
 }
 
 double LaggedCholesky::distance() const {
@@ -233,14 +238,30 @@ bool LaggedCholesky::near_round_off() const {
          round_off_.largest > allowed_.largest;
 }
 
+/// r = b - A x on a share of the rows.
+void LaggedCholesky::set_residual(std::span<const double> values, std::span<const double> b, std::span<const double> x,
+                                  std::size_t begin, std::size_t end) {
+  multiply(values, x, r_, begin, end);
+  for (std::size_t i = begin; i < end; ++i) r_[i] = b[i] - r_[i];
+}
+
 /// r = b - A x; returns the distance.
 double LaggedCholesky::update_residual(std::span<const double> values, std::span<const double> b,
                                        std::span<const double> x) {
-  norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end) {
-    multiply(values, x, r_, begin, end);
-    for (std::size_t i = begin; i < end; ++i) r_[i] = b[i] - r_[i];
-  });
+  norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end) { set_residual(values, b, x, begin, end); });
   return distance();
+}
+
+/// What a solve begins with, in one pass: the diagonal inverted, the residual of the guess, and its norms. Returns
+/// those of b.
+LaggedCholesky::Norms LaggedCholesky::measure_guess(std::span<const double> values, std::span<const double> b,
+                                                    std::span<const double> x) {
+  norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end) {
+    invert_diagonal(values, begin, end);
+    set_residual(values, b, x, begin, end);
+    sizes_[begin / share_size] = sums(b, begin, end);
+  });
+  return added_up(sizes_);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -265,7 +286,7 @@ LaggedCholesky::Report LaggedCholesky::solve(std::span<const double> values, std
 
 LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> values, std::span<const double> b,
                                                     std::span<double> x, double largest_residual) {
-  const Norms size = norms_after(b, [&](std::size_t begin, std::size_t end) { invert_diagonal(values, begin, end); });
+  const Norms size = measure_guess(values, b, x);
   // Not so if an entry of the diagonal is not positive: such a matrix is not positive definite.
   const bool positive = std::ranges::all_of(inverse_diagonal_, [](double inverse) { return inverse > 0; });
   if (!positive) factorize(values);  // which throws, and says why
@@ -279,7 +300,7 @@ LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> valu
   round_off_ = {.plain = noise * size.plain, .scaled = noise * size.scaled, .largest = noise * size.largest};
   allowed_ = {.plain = tolerance * size.plain, .scaled = tolerance * size.scaled, .largest = largest_residual};
   Report report;
-  double distance = start(values, b, size, x);
+  double distance = start(b, size, x);
   if (!(distance <= 1) || options_.choice == Options::Choice::direct) {
     bool renew = factorized_values_.empty() || rule_.renew();
     if (!renew) {
@@ -292,12 +313,12 @@ LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> valu
       const int before = report.iterations;
       factorize(values);
       report.factorized = true;
-      if (before > 0) distance = start(values, b, size, x);
+      if (before > 0) distance = start_again(values, b, size, x);
       for (const auto preconditioner : {Preconditioner::fresh, Preconditioner::fresh_double}) {
         const Outcome outcome = iterate(values, b, x, distance, preconditioner, report.iterations);
         report.converged = outcome == Outcome::converged;
         if (outcome != Outcome::given_up) break;
-        distance = start(values, b, size, x);
+        distance = start_again(values, b, size, x);
       }
       rule_.renewed(before, report.iterations - before);
     }
@@ -309,15 +330,19 @@ LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> valu
   return report;
 }
 
-/// Sets the residual of the guess, or of zero where that is a better guess; returns the distance.
-double LaggedCholesky::start(std::span<const double> values, std::span<const double> b, const Norms& size,
-                             std::span<double> x) {
-  const double found = update_residual(values, b, x);
-  if (norms_.plain <= size.plain) return found;
+/// Takes zero for the guess where that is better; returns the distance.
+double LaggedCholesky::start(std::span<const double> b, const Norms& size, std::span<double> x) {
+  if (norms_.plain <= size.plain) return distance();
   std::fill(x.begin(), x.end(), 0.0);
   std::copy(b.begin(), b.end(), r_.begin());
   norms_ = size;
   return distance();
+}
+
+double LaggedCholesky::start_again(std::span<const double> values, std::span<const double> b, const Norms& size,
+                                   std::span<double> x) {
+  update_residual(values, b, x);
+  return start(b, size, x);
 }
 
 void LaggedCholesky::factorize(std::span<const double> values) {

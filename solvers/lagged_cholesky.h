@@ -146,11 +146,16 @@ class LaggedCholesky {
   double distance() const;
   /// Whether what is allowed is so little that round-off counts.
   bool near_round_off() const;
+  static Norms added_up(const std::vector<Sums>& shares);
+  void set_residual(std::span<const double> values, std::span<const double> b, std::span<const double> x,
+                    std::size_t begin, std::size_t end);
   double update_residual(std::span<const double> values, std::span<const double> b, std::span<const double> x);
 
   Report solve_within(std::span<const double> values, std::span<const double> b, std::span<double> x,
                       double largest_residual);
-  double start(std::span<const double> values, std::span<const double> b, const Norms& size, std::span<double> x);
+  Norms measure_guess(std::span<const double> values, std::span<const double> b, std::span<const double> x);
+  double start(std::span<const double> b, const Norms& size, std::span<double> x);
+  double start_again(std::span<const double> values, std::span<const double> b, const Norms& size, std::span<double> x);
   void factorize(std::span<const double> values);
   Outcome iterate(std::span<const double> values, std::span<const double> b, std::span<double> x, double distance,
                   Preconditioner preconditioner, int& iterations);
@@ -167,7 +172,7 @@ class LaggedCholesky {
   Norms round_off_;  // of what round-off adds to a residual
   Norms norms_;      // of r_
   FullRows rows_;
-  std::vector<Sums> shares_;
+  std::vector<Sums> shares_, sizes_;  // of r_ and of b, by share
   std::vector<double> inverse_diagonal_, r_, z_, p_, q_;
 };
 

@@ -8,9 +8,11 @@
 namespace sluice {
 namespace {
 
-/// Parts that a factor is divided into, if it has this many numbers: below, waiting for each other costs more.
-constexpr std::size_t enough_parts = 8;
+/// A factor is divided into parts if it has this many numbers: below, waiting for each other costs more.
 constexpr std::size_t worth_dividing = 50'000;
+/// More parts serve more threads, but what they have in common is done by one: it may grow to this share of the factor.
+constexpr std::size_t enough_parts = 16;
+constexpr double largest_trunk = 0.08;
 
 /// y -= A x for `rows` x `width` A by columns. Four columns at a time, so that y is read and written less often.
 void subtract_product(const float* a, std::size_t rows, std::size_t width, const float* x, float* y) {
@@ -117,16 +119,21 @@ void PackedFactor::divide() {
     branches.clear();
     for (std::size_t b = 0; b < blocks_.size(); ++b) trunk_.push_back(b);
   }
+  double trunk = 0;
   while (!branches.empty() && branches.size() < enough_parts) {
     const auto largest =
         std::ranges::max_element(branches, [&](std::size_t a, std::size_t b) { return size[a] < size[b]; });
     const std::size_t root = *largest;
-    if (children[root].empty()) break;
+    trunk += static_cast<double>(blocks_[root].width * (blocks_[root].width + blocks_[root].rows));
+    if (children[root].empty() || (branches.size() > 1 && trunk > largest_trunk * static_cast<double>(value_.size())))
+      break;
     trunk_.push_back(root);
     branches.erase(largest);
     branches.insert(branches.end(), children[root].begin(), children[root].end());
   }
-  std::ranges::sort(branches);
+  // The largest first: threads that take one after the other then end together.
+  std::ranges::sort(branches,
+                    [&](std::size_t a, std::size_t b) { return size[a] > size[b] || (size[a] == size[b] && a < b); });
   std::ranges::sort(trunk_);
   for (const std::size_t b : trunk_)
     for (std::size_t k = blocks_[b].first; k < blocks_[b].first + blocks_[b].width; ++k) {

@@ -200,6 +200,34 @@ SLUICE_ALWAYS_INLINE void add_to_nodes(const ChunkWeights<Dim, Shape>& w, int p,
   }
 }
 
+/// The same for momentum (to `tile`) and force (to `force_tile`) at once, in two dimensions: weights are read once.
+template <class Shape, bool Affine>
+SLUICE_ALWAYS_INLINE void add_both_to_nodes(const ChunkWeights<2, Shape>& w, int p, Lane base, const Lane* slope,
+                                            Lane body, const Lane* flux, Lane* tile, Lane* force_tile) {
+  constexpr int nodes = Shape::nodes;
+  Lane* const origin = tile + w.base[p];
+  Lane* const force_origin = force_tile + w.base[p];
+  for (int j = 0; j < nodes; ++j) {
+    const double n = w.value[1][j][p];
+    Lane row = base, row_slope{};
+    if constexpr (Affine) {
+      row += w.distance[1][j][p] * slope[1];
+      row_slope = n * slope[0];
+    }
+    row *= n;
+    const Lane force_row = n * body + w.slope[1][j][p] * flux[1], row_flux = n * flux[0];
+    Lane* const node = origin + j * tile_stride<2, Shape>(1);
+    Lane* const force_node = force_origin + j * tile_stride<2, Shape>(1);
+    for (int i = 0; i < nodes; ++i) {
+      const double value = w.value[0][i][p];
+      Lane sum = row;
+      if constexpr (Affine) sum += w.distance[0][i][p] * row_slope;
+      node[i] += value * sum;
+      force_node[i] += value * force_row + w.slope[0][i][p] * row_flux;
+    }
+  }
+}
+
 template <int Dim>
 SLUICE_ALWAYS_INLINE Lane body_force(const std::array<const double*, Dim>& force, std::uint32_t p) {
   if constexpr (Dim == 2)
@@ -233,6 +261,11 @@ SLUICE_MULTITARGET void scatter(const ScatterInput<Dim>& in, double impulse_dt, 
                           m * in.affine[static_cast<std::size_t>(Dim + b)][p], 0};
           if constexpr (Dim == 3) slope[b][3] = m * in.affine[static_cast<std::size_t>(2 * Dim + b)][p];
         }
+      }
+      if constexpr (Dim == 2 && momentum && force) {
+        add_both_to_nodes<Shape, Affine>(w, k, mass_and_momentum<Dim>(in.mass[p], in.velocity, p), slope,
+                                         Body ? body_force<Dim>(in.body_force, p) : Lane{}, flux, tile, force_tile);
+        continue;
       }
       if constexpr (momentum)
         add_to_nodes<Dim, Shape, Affine, impulse>(w, k, mass_and_momentum<Dim>(in.mass[p], in.velocity, p), slope, flux,

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/case/case_schema.h"
-#include "core/parallel/multitarget.h"
 #include "core/parallel/parallel.h"
 #include "physics/two_phase/steady_seepage.h"
 
@@ -53,8 +53,9 @@ void PressureEquation<Dim>::prepare(const Scene<Dim>& scene, const std::vector<c
   const std::size_t blocks = scene.blocks.particle_blocks().size();
   // Dry blocks keep their zeros.
   cell_sums_.assign(blocks * cell_tile<Dim>, {});
-  vertex_tiles_.resize(blocks * Grid::vertex_tile);
-  std::fill_n(vertex_tiles_.data(), blocks * Grid::vertex_tile, Lane{});
+  // One place more, which stays zero: where no further tile holds a part of a vertex.
+  vertex_tiles_.resize(blocks * Grid::vertex_tile + 1);
+  std::fill_n(vertex_tiles_.data(), blocks * Grid::vertex_tile + 1, Lane{});
   if (!grid_.empty()) grid_.locate(scene.blocks);
 }
 
@@ -119,105 +120,56 @@ void PressureEquation<Dim>::restore(const Archive& archive) {
   solver_.restore({archive.reals.at("pressure_factorized"), archive.reals.at("pressure_counters")});
 }
 
-namespace {
-
-/// Calls add(entry) for the entries of tiles that belong to one cell or vertex, in the order of the blocks.
-template <std::size_t Most, class Add>
-SLUICE_ALWAYS_INLINE void for_entries(const std::array<std::int32_t, Most>& entries, const Add& add) {
-  for (const std::int32_t entry : entries) {
-    if (entry < 0) return;
-    add(static_cast<std::size_t>(entry));
-  }
-}
-
-}  // namespace
-
 template <int Dim>
-void PressureEquation<Dim>::sum_cells() {
-  sums_.resize(grid_.cells().size());
-  parallel_items(sums_.size(), [&](std::size_t c) {
-    CellSums<Dim> sum;
-    for_entries(grid_.cell_entries(c), [&](std::size_t at) { sum.add(cell_sums_[at]); });
-    sums_[c] = sum;
-  });
+CellSums<Dim> PressureEquation<Dim>::cell_sum(std::size_t c) const {
+  CellSums<Dim> sum;
+  for (const std::int32_t entry : grid_.cell_entries(c)) {
+    if (entry < 0) break;
+    sum.add(cell_sums_[static_cast<std::size_t>(entry)]);
+  }
+  return sum;
 }
 
 template <int Dim>
 Lane PressureEquation<Dim>::vertex_sum(std::size_t v) const {
   Lane sum{};
-  for_entries(grid_.vertex_entries(v), [&](std::size_t at) { sum += vertex_tiles_.data()[at]; });
+  for (const std::int32_t at : grid_.vertex_entries(v)) sum += vertex_tiles_.data()[at];
   return sum;
 }
 
 // ---- coefficients ----
 
-/// Eqs. (44) and (47): what multiplies the Laplacian of the new and of the old pressure.
 template <int Dim>
-SLUICE_ALWAYS_INLINE typename PressureEquation<Dim>::CellState PressureEquation<Dim>::cell_state(
-    const CellSums<Dim>& sums, const StepConstants& step) const {
-  CellState cell;
-  if (!(sums.volume > 0)) return cell;
-  const double inverse = 1 / sums.volume, specific = sums.inverse_density * inverse;
-  const double lightness = water_.density * specific;  // rho_w / rho
-  const double inertial = step.kick * specific;
-  cell.storage = sums.storage * inverse * step.corner_volume_per_dt;
-  // At most as soft as a skeleton in which an elastic wave crosses a fiftieth of a cell.
-  const double compliance = sums.compliance * inverse;
-  cell.steadied = compliance > 0 ? inertial * step.steadied : 0;
-  for (std::size_t a = 0; a < Dim; ++a) {
-    const double mobility = sums.mobility[a] * inverse, push = sums.push[a] * inverse;
-    const double projection = inertial + mobility * (1 - lightness);
-    const double wanted = step.stabilised[a] * std::min(compliance, step.softest[a] * specific);
-    // The acceleration in Darcy's law holds the old pressure; explicitly, that is unstable where rho < 2 rho_w and the
-    // soil is coarse.
-    const double lagged = (lightness - 0.4) * mobility - inertial;
-    const double stabilisation = std::max(0.0, std::max(wanted - projection, lagged));
-    const double implicit = projection + stabilisation;
-    const double old = water_.increment * (projection - mobility) + stabilisation;
-    for (std::size_t n = 0; n < Grid::corners; ++n) {
-      cell.implicit[n] += implicit * integrals_.laplacian[a][n];
-      cell.old[n] += old * integrals_.laplacian[a][n];
-      cell.push[n] += push * integrals_.slope[a][n];
-    }
-  }
-  return cell;
-}
-
-template <int Dim>
-typename PressureEquation<Dim>::StepConstants PressureEquation<Dim>::constants(const PressureStep& step) const {
+StepCoefficients<Dim> PressureEquation<Dim>::coefficients(const PressureStep& step) const {
   const double corner_volume = geometry_.cell_volume() / Grid::corners;
-  StepConstants constants{.kick = step.kick,
-                          .corner_volume_per_dt = corner_volume / step.dt,
-                          .steadied = step.stabilised ? 1.5 * corner_volume : 0};
+  StepCoefficients<Dim> of_step{.density = water_.density,
+                                .increment = water_.increment,
+                                .kick = step.kick,
+                                .corner_volume_per_dt = corner_volume / step.dt,
+                                .steadied = step.stabilised ? 1.5 * corner_volume : 0};
   for (std::size_t a = 0; a < Dim; ++a) {
     const double h = geometry_.cell[a];
-    constants.stabilised[a] = step.stabilised ? h * h / (4 * step.dt) : 0;
-    constants.softest[a] = 2500 * step.dt * step.dt / (h * h);
+    of_step.stabilised[a] = step.stabilised ? h * h / (4 * step.dt) : 0;
+    of_step.softest[a] = 2500 * step.dt * step.dt / (h * h);
   }
-  return constants;
-}
-
-template <int Dim>
-SLUICE_MULTITARGET void PressureEquation<Dim>::set_states(const StepConstants& step, std::size_t begin,
-                                                          std::size_t end) {
-  for (std::size_t c = begin; c < end; ++c) cells_[c] = cell_state(sums_[c], step);
+  return of_step;
 }
 
 /// A cell with little or no water beside a vertex that is inside takes the coefficients of the cells around it.
 template <int Dim>
 void PressureEquation<Dim>::set_cells(const PressureStep& step) {
   const double least = least_fill * geometry_.cell_volume();
-  const StepConstants of_step = constants(step);
+  const StepCoefficients<Dim> of_step = coefficients(step);
   cells_.resize(sums_.size());
-  parallel_shares(cells_.size(), items_a_share, [&](std::size_t begin, std::size_t end, std::size_t) {
-    set_states(of_step, begin, end);
+  parallel_shares(sums_.size(), items_a_share, [&](std::size_t begin, std::size_t end, std::size_t) {
+    cells_.set(begin, std::span(sums_).subspan(begin, end - begin), of_step);
     for (std::size_t c = begin; c < end; ++c) {
       if (sums_[c].volume >= least) continue;
       CellSums<Dim> sums = sums_[c];
       for (const std::int32_t v : grid_.cells()[c].vertex)
         for (const std::int32_t other : grid_.vertices()[static_cast<std::size_t>(v)].cell)
           if (other >= 0) sums.add(sums_[static_cast<std::size_t>(other)]);
-      cells_[c] = cell_state(sums, of_step);
+      cells_.set(c, {&sums, 1}, of_step);
     }
   });
 }
@@ -229,99 +181,52 @@ bool PressureEquation<Dim>::on_face(const Index<Dim>& place, int axis, int side)
   return place[axis] == (side == 0 ? 0 : geometry_.cells[axis]);
 }
 
-/// Sums of the vertices, and what they make of them. Inside is a vertex more than half of whose surroundings, in the
-/// grid, are wet: on a flat surface, that lies below it.
+/// Sums of a vertex, and what they make of it. Inside is a vertex more than half of whose surroundings, in the grid,
+/// are wet: on a flat surface, that lies below it.
 template <int Dim>
-void PressureEquation<Dim>::classify(const PressureStep& step) {
-  const std::size_t count = grid_.vertices().size();
-  const double g = unit_weight_;
-  fill_.resize(count), kind_.resize(count), given_.resize(count), old_.resize(count), pressure_.resize(count);
-  lanes_.resize(count);
-  parallel_items(count, [&](std::size_t v) {
-    const auto& vertex = grid_.vertices()[v];
-    lanes_[v] = vertex_sum(v);
-    const double volume = lanes_[v][0];
-    fill_[v] = volume / (vertex.share * geometry_.cell_volume());
-    kind_[v] = fill_[v] > 0.5 + 1e-6 ? Kind::inside : Kind::outside;
-    old_[v] = volume > 0 ? lanes_[v][1] / volume : 0;
-    if (kind_[v] == Kind::outside) return;
-    for (int a = 0; a < Dim; ++a)
-      for (int side = 0; side < 2; ++side) {
-        const WaterFace* const face = faces_[static_cast<std::size_t>(2 * a + side)];
-        if (face == nullptr || !on_face(vertex.place, a, side)) continue;
-        const double head = face->head ? face->head->at(step.time) - geometry_.vertex(vertex.place)[Dim - 1] : 0;
-        // Above its level, water leaves through the face where it has pressure: a seepage face.
-        const bool seeps = face->head && head <= 0 && old_[v] > 0;
-        if (face->pressure || head > 0 || seeps) {
-          kind_[v] = Kind::given;
-          given_[v] = face->pressure ? face->pressure->at(step.time) : g * std::max(0.0, head);
-        }
+void PressureEquation<Dim>::classify(std::size_t v, double time) {
+  // Vertices of a run are not looked up: they have all their surroundings, and lie on no face.
+  const bool in_run = grid_.run_end(v) > v;
+  lanes_[v] = vertex_sum(v);
+  const double volume = lanes_[v][0];
+  fill_[v] = volume / ((in_run ? 1 : grid_.vertices()[v].share) * geometry_.cell_volume());
+  kind_[v] = fill_[v] > 0.5 + 1e-6 ? Kind::inside : Kind::outside;
+  old_[v] = volume > 0 ? lanes_[v][1] / volume : 0;
+  if (in_run || kind_[v] == Kind::outside) return;
+  const auto& vertex = grid_.vertices()[v];
+  for (int a = 0; a < Dim; ++a)
+    for (int side = 0; side < 2; ++side) {
+      const WaterFace* const face = faces_[static_cast<std::size_t>(2 * a + side)];
+      if (face == nullptr || !on_face(vertex.place, a, side)) continue;
+      const double head = face->head ? face->head->at(time) - geometry_.vertex(vertex.place)[Dim - 1] : 0;
+      // Above its level, water leaves through the face where it has pressure: a seepage face.
+      const bool seeps = face->head && head <= 0 && old_[v] > 0;
+      if (face->pressure || head > 0 || seeps) {
+        kind_[v] = Kind::given;
+        given_[v] = face->pressure ? face->pressure->at(time) : unit_weight_ * std::max(0.0, head);
       }
+    }
+}
+
+/// All cells and vertices, those of like numbers by one thread: they lie together, and meet again in the rows.
+template <int Dim>
+void PressureEquation<Dim>::sum_up(double time) {
+  const std::size_t cells = grid_.cells().size(), vertices = grid_.vertices().size();
+  sums_.resize(cells);
+  fill_.resize(vertices), kind_.resize(vertices), given_.resize(vertices);
+  old_.resize(vertices), pressure_.resize(vertices), lanes_.resize(vertices);
+  parallel_shares(std::max(cells, vertices), items_a_share, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t c = begin; c < std::min(end, cells); ++c) sums_[c] = cell_sum(c);
+    for (std::size_t v = begin; v < std::min(end, vertices); ++v) classify(v, time);
   });
 }
 
 // ---- the system ----
 
-namespace {
-
-/// [n][k]: which coupling of cell k around a vertex (m ^ n of its corners) is one with the vertex at place n of the
-/// stencil; -1: that vertex is no corner of the cell.
-template <int Dim>
-constexpr auto couplings_of_cells = [] {
-  constexpr std::size_t corners = power(2, Dim);
-  std::array<std::array<int, corners>, power(3, Dim)> couplings{};
-  for (auto& of_place : couplings) of_place.fill(-1);
-  for (std::size_t k = 0; k < corners; ++k)
-    for (std::size_t n = 0; n < corners; ++n) {
-      const std::size_t m = corners - 1 - k;  // the corner that the vertex is
-      std::size_t place = 0;
-      for (int a = Dim - 1; a >= 0; --a) place = 3 * place + 1 + (n >> a & 1) - (m >> a & 1);
-      couplings[place][k] = static_cast<int>(m ^ n);
-    }
-  return couplings;
-}();
-
-}  // namespace
-
-/// Written out for each place of the stencil when compiled: no branches, and sums in registers.
-template <int Dim>
-SLUICE_ALWAYS_INLINE typename PressureEquation<Dim>::Row PressureEquation<Dim>::row(
-    const typename Grid::Vertex& vertex) const {
-  static const CellState nothing{};
-  std::array<const CellState*, Grid::corners> cell;
-  for (std::size_t k = 0; k < Grid::corners; ++k)
-    cell[k] = vertex.cell[k] >= 0 ? cells_.data() + vertex.cell[k] : &nothing;
-  const auto coupling = [&]<std::size_t n>(const auto CellState::*kind) {
-    double sum = 0;
-    [&]<std::size_t... k>(std::index_sequence<k...>) {
-      (
-          [&] {
-            constexpr int c = couplings_of_cells<Dim>[n][k];
-            if constexpr (c >= 0) sum += (cell[k]->*kind)[static_cast<std::size_t>(c)];
-          }(),
-          ...);
-    }
-    (std::make_index_sequence<Grid::corners>());
-    return sum;
-  };
-  Row row;
-  [&]<std::size_t... n>(std::index_sequence<n...>) {
-    ((row.implicit[n] = coupling.template operator()<n>(&CellState::implicit)), ...);
-    ((row.old[n] = coupling.template operator()<n>(&CellState::old)), ...);
-  }
-  (std::make_index_sequence<Grid::stencil>());
-  for (std::size_t k = 0; k < Grid::corners; ++k) {
-    row.storage += cell[k]->storage;
-    row.steadied += cell[k]->steadied;
-    row.push += cell[k]->push[Grid::corners - 1 - k];
-  }
-  return row;
-}
-
 /// How unevenly particles lie around a vertex inside, eq. (47a): from the slopes of the fill, unless those are the
 /// surface's [1/m2].
 template <int Dim>
-SLUICE_ALWAYS_INLINE double PressureEquation<Dim>::unevenness(std::size_t i) const {
+double PressureEquation<Dim>::unevenness(std::size_t i) const {
   const auto& vertex = grid_.vertices()[i];
   double sum = 0;
   for (int a = 0, step = 1; a < Dim; ++a, step *= 3) {
@@ -380,9 +285,9 @@ double PressureEquation<Dim>::face_flux(const typename Grid::Vertex& vertex, dou
 /// the one there. So what a vertex balances is what it moves, and a step never feeds a motion that the next step wants
 /// undone.
 template <int Dim>
-void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside,
-                                      double time) {
+void PressureEquation<Dim>::write_row(std::size_t i, const ExternalPressure<Dim>& outside, double time) {
   const auto& vertex = grid_.vertices()[i];
+  const PressureRow<Dim> row = pressure_row<Dim>(vertex, cells_, integrals_);
   const double storage = row.storage + row.steadied * unevenness(i);
   double diagonal = row.implicit[Grid::centre] + storage;
   double right = row.push - face_flux(vertex, time) + (row.old[Grid::centre] + storage) * old_[i];
@@ -415,29 +320,11 @@ void PressureEquation<Dim>::write_row(std::size_t i, const Row& row, const Exter
   right_side_[i] = right - (at_surface ? expansion : expansion / fill_[i]);
 }
 
-/// The same where all vertices around are inside and no face is near: nothing but the sums.
+/// The pressure is guessed to change as it did in the last step.
 template <int Dim>
-SLUICE_ALWAYS_INLINE void PressureEquation<Dim>::write_inner_row(std::size_t i, const Row& row) {
-  const auto& vertex = grid_.vertices()[i];
-  const double storage = row.storage + row.steadied * unevenness(i);
-  double right = row.push + storage * old_[i];
-  for (std::size_t n = 0; n < Grid::stencil; ++n)
-    right += row.old[n] * old_[static_cast<std::size_t>(vertex.neighbour[n])];
-  // The couplings with the vertices behind have places that follow each other.
-  double* const values = values_.data() + vertex.slot[Grid::centre];
-  for (std::size_t n = Grid::centre; n < Grid::stencil; ++n) values[n - Grid::centre] = row.implicit[n];
-  values[0] += storage;
-  right_side_[i] = right - lanes_[i][2] / fill_[i];
-}
-
-template <int Dim>
-SLUICE_ALWAYS_INLINE bool PressureEquation<Dim>::is_inner(const typename Grid::Vertex& vertex) const {
-  bool inner = vertex.share == 1;
-  for (const std::int32_t j : vertex.neighbour) {
-    inner = inner && j >= 0 && kind_[static_cast<std::size_t>(j)] == Kind::inside;
-    if (!inner) return false;
-  }
-  return true;
+void PressureEquation<Dim>::guess(std::size_t begin, std::size_t end) {
+  for (std::size_t v = begin; v < end; ++v)
+    pressure_[v] = kind_[v] == Kind::inside ? old_[v] + change_[v] : kind_[v] == Kind::given ? given_[v] : 0;
 }
 
 template <int Dim>
@@ -445,32 +332,72 @@ void PressureEquation<Dim>::assemble(const ExternalPressure<Dim>& outside, const
   const std::size_t count = grid_.vertices().size();
   values_.resize(grid_.pattern().row.size());
   right_side_.resize(count);
-  parallel_shares(count, items_a_share,
-                  [&](std::size_t begin, std::size_t end, std::size_t) { write_rows(begin, end, outside, step.time); });
+  parallel_shares(count, items_a_share, [&](std::size_t begin, std::size_t end, std::size_t) {
+    write_rows(begin, end, outside, step.time);
+    guess(begin, end);
+  });
 }
 
+/// Inner vertices of a run together, the others one by one.
 template <int Dim>
-SLUICE_MULTITARGET void PressureEquation<Dim>::write_rows(std::size_t begin, std::size_t end,
-                                                          const ExternalPressure<Dim>& outside, double time) {
-  for (std::size_t i = begin; i < end; ++i) {
-    const auto& vertex = grid_.vertices()[i];
-    const Row own = row(vertex);
-    if (is_inner(vertex))
-      write_inner_row(i, own);
-    else if (kind_[i] == Kind::inside)
-      write_row(i, own, outside, time);
+void PressureEquation<Dim>::write_rows(std::size_t begin, std::size_t end, const ExternalPressure<Dim>& outside,
+                                       double time) {
+  const InnerRows<Dim> rows{cells_,      integrals_,    geometry_.cell, fill_.data(),
+                            old_.data(), lanes_.data(), values_.data(), right_side_.data()};
+  for (std::size_t i = begin; i < end;) {
+    if (const std::size_t inner = inner_vertices(i, end); inner > 0) {
+      write_inner_rows<Dim>(grid_.vertices()[i], i, inner, rows);
+      i += inner;
+      continue;
+    }
+    if (kind_[i] == Kind::inside)
+      write_row(i, outside, time);
     else
-      write_own_equation(i, own);
+      write_own_equation(i);
+    ++i;
   }
+}
+
+namespace {
+
+/// How many of `count` bytes, from the first on, are `wanted`: eight at a time.
+template <class Byte>
+std::size_t leading(const Byte* bytes, std::size_t count, Byte wanted) {
+  static_assert(sizeof(Byte) == 1);
+  const std::uint64_t eight_wanted = 0x0101010101010101u * static_cast<std::uint64_t>(wanted);
+  std::size_t n = 0;
+  for (std::uint64_t eight; n + 8 <= count; n += 8) {
+    std::memcpy(&eight, bytes + n, 8);
+    if (eight != eight_wanted) break;
+  }
+  while (n < count && bytes[n] == wanted) ++n;
+  return n;
+}
+
+}  // namespace
+
+/// How many of the run from i on, before `end`, have vertices inside around them and nothing else.
+template <int Dim>
+std::size_t PressureEquation<Dim>::inner_vertices(std::size_t i, std::size_t end) const {
+  const std::size_t last = std::min(end, grid_.run_end(i));
+  if (last <= i) return 0;
+  std::size_t count = last - i;
+  for (const std::int32_t neighbour : grid_.vertices()[i].neighbour)
+    count = leading(kind_.data() + neighbour, count, Kind::inside);
+  return count;
 }
 
 /// A vertex without an unknown: an equation of its own, of about the size of the others.
 template <int Dim>
-void PressureEquation<Dim>::write_own_equation(std::size_t i, const Row& row) {
+void PressureEquation<Dim>::write_own_equation(std::size_t i) {
   const auto& vertex = grid_.vertices()[i];
   for (const std::int32_t slot : vertex.slot)
     if (slot >= 0) values_[static_cast<std::size_t>(slot)] = 0;
-  const double diagonal = row.implicit[Grid::centre] > 0 ? row.implicit[Grid::centre] : 1;
+  double diagonal = 0;
+  for (const std::int32_t cell : vertex.cell)
+    for (std::size_t a = 0; cell >= 0 && a < Dim; ++a)
+      diagonal += integrals_.laplacian[a][0] * cells_.implicit[a][static_cast<std::size_t>(cell)];
+  if (!(diagonal > 0)) diagonal = 1;
   values_[static_cast<std::size_t>(vertex.slot[Grid::centre])] = diagonal;
   right_side_[i] = kind_[i] == Kind::given ? diagonal * given_[i] : 0;
 }
@@ -502,17 +429,12 @@ void PressureEquation<Dim>::solve(Scene<Dim>& scene, const ExternalPressure<Dim>
     const auto timing = scene.clock.time(Stage::pressure_assembly);
     if (!covered(scene)) rebuild(scene);
     if (grid_.empty()) return;
-    sum_cells();
+    sum_up(step.time);
     set_cells(step);
-    classify(step);
     assemble(outside, step);
   }
   const auto timing = scene.clock.time(Stage::pressure_solve);
-  // The pressure is guessed to change as it did in the last step.
-  for (std::size_t v = 0; v < pressure_.size(); ++v)
-    pressure_[v] = kind_[v] == Kind::inside ? old_[v] + change_[v] : kind_[v] == Kind::given ? given_[v] : 0;
   solve_system(step.dt);
-  for (std::size_t v = 0; v < pressure_.size(); ++v) change_[v] = kind_[v] == Kind::inside ? pressure_[v] - old_[v] : 0;
   extrapolate(outside, step.time);
 }
 
@@ -549,6 +471,7 @@ double PressureEquation<Dim>::continuation(std::size_t i, std::size_t j, std::si
 template <int Dim>
 void PressureEquation<Dim>::extrapolate(const ExternalPressure<Dim>& outside, double time) {
   parallel_items(kind_.size(), [&](std::size_t j) {
+    change_[j] = kind_[j] == Kind::inside ? pressure_[j] - old_[j] : 0;
     if (kind_[j] != Kind::outside) return;
     const auto& vertex = grid_.vertices()[j];
     const double all_lines = line_weights(j);
@@ -568,7 +491,7 @@ template <int Dim>
 double PressureEquation<Dim>::solve_steady(Scene<Dim>& scene, const ExternalPressure<Dim>& outside) {
   if (!covered(scene)) rebuild(scene);
   if (grid_.empty()) return 0;
-  sum_cells();
+  sum_up(scene.time);
   SteadySeepage found = solve_steady_seepage(grid_, sums_, geometry_, water_, outside, unit_weight_, scene.time);
   pressure_ = std::move(found.pressure);
   return found.discharge;

@@ -15,9 +15,11 @@
 #include "core/output/archive.h"
 #include "core/simulation/scene.h"
 #include "physics/loads/external_pressure.h"
+#include "physics/two_phase/cell_coefficients.h"
 #include "physics/two_phase/cell_sums.h"
 #include "physics/two_phase/corner_integrals.h"
 #include "physics/two_phase/pressure_grid.h"
+#include "physics/two_phase/pressure_rows.h"
 #include "physics/two_phase/water.h"
 #include "solvers/lagged_cholesky.h"
 
@@ -66,26 +68,6 @@ class PressureEquation {
   using Grid = PressureGrid<Dim>;
   enum class Kind : char { outside, inside, given };
 
-  /// Coefficients of one cell.
-  struct CellState {
-    /// [m ^ n]: couplings of corners m and n through the new and the old pressure.
-    std::array<double, Grid::corners> implicit{}, old{};
-    std::array<double, Grid::corners> push{};  ///< of each corner [m3/s]
-    double storage = 0;                        ///< of each corner
-    double steadied = 0;  ///< of each corner, per unevenness: 3/2 kick / rho where there is a skeleton, eq. (47a)
-  };
-  /// What the coefficients of all cells have in common in a step.
-  struct StepConstants {
-    double kick, corner_volume_per_dt;
-    double steadied;                       ///< 3/2 of the volume of a corner, or 0 without stabilisation
-    std::array<double, Dim> stabilised{};  ///< h^2 / (4 dt), or 0 without stabilisation
-    std::array<double, Dim> softest{};     ///< (50 dt / h)^2
-  };
-  /// Couplings of a vertex with those around it.
-  struct Row {
-    std::array<double, Grid::stencil> implicit, old;
-    double storage = 0, push = 0, steadied = 0;
-  };
   /// A line from a vertex inside to one outside, and where it crosses the surface.
   struct Crossing {
     double share;     ///< of the line that is inside
@@ -95,22 +77,20 @@ class PressureEquation {
   bool covered(const Scene<Dim>& scene) const;
   void rebuild(const Scene<Dim>& scene);
   void build(const std::vector<Index<Dim>>& wet_cells);
-  void sum_cells();
+  CellSums<Dim> cell_sum(std::size_t c) const;
   Lane vertex_sum(std::size_t v) const;
   void set_cells(const PressureStep& step);
-  void set_states(const StepConstants& step, std::size_t begin, std::size_t end);
-  StepConstants constants(const PressureStep& step) const;
-  CellState cell_state(const CellSums<Dim>& sums, const StepConstants& step) const;
-  void classify(const PressureStep& step);
+  StepCoefficients<Dim> coefficients(const PressureStep& step) const;
+  void classify(std::size_t v, double time);
+  void sum_up(double time);
   bool on_face(const Index<Dim>& place, int axis, int side) const;
   void assemble(const ExternalPressure<Dim>& outside, const PressureStep& step);
   void write_rows(std::size_t begin, std::size_t end, const ExternalPressure<Dim>& outside, double time);
-  void write_own_equation(std::size_t i, const Row& row);
-  Row row(const typename Grid::Vertex& vertex) const;
-  bool is_inner(const typename Grid::Vertex& vertex) const;
+  void guess(std::size_t begin, std::size_t end);
+  void write_own_equation(std::size_t i);
+  std::size_t inner_vertices(std::size_t i, std::size_t end) const;
   double unevenness(std::size_t i) const;
-  void write_inner_row(std::size_t i, const Row& row);
-  void write_row(std::size_t i, const Row& row, const ExternalPressure<Dim>& outside, double time);
+  void write_row(std::size_t i, const ExternalPressure<Dim>& outside, double time);
   double surface_share(std::size_t inside, std::size_t neighbour) const;
   Crossing crossing(std::size_t inside, std::size_t neighbour, const ExternalPressure<Dim>& outside, double time) const;
   double face_flux(const typename Grid::Vertex& vertex, double time) const;
@@ -133,8 +113,8 @@ class PressureEquation {
   std::vector<CellSums<Dim>> cell_sums_;
   LaneArray vertex_tiles_;
 
-  std::vector<CellSums<Dim>> sums_;     // by cell
-  std::vector<CellState> cells_;        // by cell
+  std::vector<CellSums<Dim>> sums_;  // by cell
+  CellCoefficients<Dim> cells_;
   std::vector<Lane> lanes_;             // by vertex
   std::vector<double> fill_;            // by vertex: share of its surroundings that is wet
   std::vector<Kind> kind_;              // by vertex

@@ -73,6 +73,7 @@ void PressureGrid<Dim>::build(const std::vector<Index<Dim>>& wet, const GridGeom
   number_vertices();
   link_vertices(grid);
   make_pattern();
+  find_runs();
 }
 
 template <int Dim>
@@ -148,6 +149,19 @@ void PressureGrid<Dim>::make_pattern() {
 }
 
 template <int Dim>
+void PressureGrid<Dim>::find_runs() {
+  const auto complete = [](const Vertex& v) {
+    return v.share == 1 && std::ranges::min(v.cell) >= 0 && std::ranges::min(v.neighbour) >= 0;
+  };
+  run_end_.resize(vertices_.size());
+  for (std::size_t i = vertices_.size(); i-- > 0;) {
+    const bool whole = complete(vertices_[i]);
+    // With all neighbours, the next vertex is the neighbour behind; cells and vertices of a line are numbered in order.
+    run_end_[i] = !whole ? i : std::max(i + 1, i + 1 < vertices_.size() ? run_end_[i + 1] : 0);
+  }
+}
+
+template <int Dim>
 void PressureGrid<Dim>::locate(const Blocks<Dim>& blocks) {
   const auto link = [&](const Numbers& numbers, int width, std::size_t tile, std::size_t count,
                         std::vector<std::int32_t>& tiles, std::vector<Entries>& entries) {
@@ -169,6 +183,8 @@ void PressureGrid<Dim>::locate(const Blocks<Dim>& blocks) {
   };
   link(cell_numbers_, cell_tile_width<Dim>, cell_tile<Dim>, cells_.size(), tile_cells_, cell_entries_);
   link(vertex_numbers_, tile_width<Dim>(1), vertex_tile, vertices_.size(), tile_vertices_, vertex_entries_);
+  const auto behind = static_cast<std::int32_t>(blocks.particle_blocks().size() * vertex_tile);
+  for (Entries& own : vertex_entries_) std::ranges::replace(own, -1, behind);
   has_gaps_.resize(blocks.particle_blocks().size());
   for (std::size_t b = 0; b < has_gaps_.size(); ++b) {
     const std::int32_t* const cells = cells_of_tile(b);

@@ -34,7 +34,8 @@ class PressureGrid {
     Index<Dim> place;
     std::array<std::int32_t, corners> vertex;
   };
-  /// Where the tiles of blocks hold the sums that belong to one cell or vertex; -1 where there are fewer.
+  /// Where the tiles of blocks hold the sums that belong to one cell or vertex. Where there are fewer: -1 for cells,
+  /// the place behind all tiles for vertices.
   using Entries = std::array<std::int32_t, corners>;
 
   /// The part of a face of the grid, normal to an axis, that belongs to a vertex on it [m^(Dim-1)].
@@ -49,6 +50,10 @@ class PressureGrid {
 
   bool empty() const { return vertices_.empty(); }
   const std::vector<Vertex>& vertices() const { return vertices_; }
+  /// Behind the last vertex of the run that vertex i belongs to: consecutive vertices along the first axis with all
+  /// their neighbours, so that cells, neighbours and slots follow each other as the vertices do. i itself if there is
+  /// no run.
+  std::size_t run_end(std::size_t i) const { return run_end_[i]; }
   const std::vector<Cell>& cells() const { return cells_; }
   const Entries& cell_entries(std::size_t cell) const { return cell_entries_[cell]; }
   const Entries& vertex_entries(std::size_t vertex) const { return vertex_entries_[vertex]; }
@@ -82,10 +87,12 @@ class PressureGrid {
   void number_vertices();
   void link_vertices(const GridGeometry<Dim>& grid);
   void make_pattern();
+  void find_runs();
 
   Numbers cell_numbers_, vertex_numbers_;
   std::vector<Cell> cells_;
   std::vector<Vertex> vertices_;
+  std::vector<std::size_t> run_end_;  // by vertex
   SymmetricPattern pattern_;
   std::vector<Entries> cell_entries_, vertex_entries_;
   std::vector<std::int32_t> tile_cells_, tile_vertices_;

@@ -186,7 +186,7 @@ void expect_entries(const Blocks<Dim>& blocks, std::size_t tile, int width, std:
   std::map<std::int32_t, std::size_t> owner;
   for (std::size_t i = 0; i < count; ++i)
     for (const std::int32_t entry : entries(i))
-      if (entry >= 0) {
+      if (entry >= 0 && static_cast<std::size_t>(entry) < blocks.particle_blocks().size() * tile) {
         ASSERT_TRUE(owner.emplace(entry, i).second) << "entry " << entry << " belongs to two";
       }
   std::size_t found = 0;
@@ -219,6 +219,34 @@ TEST(PressureGrid, FindsTheEntriesOfAllTiles) {
         blocks, grid.vertex_tile, tile_width<Dim>(1), grid.vertices().size(),
         [&](std::size_t i) { return grid.vertices()[i].place; }, [&](std::size_t i) { return grid.vertex_entries(i); },
         [&](std::size_t b) { return grid.vertices_of_tile(b); });
+  });
+}
+
+// Rows of a run are written together: what holds for the first must hold for all, so many places on.
+TEST(PressureGrid, RunsAreConsecutiveInAllThatTheyLinkTo) {
+  with_grids([]<int Dim>(PressureGrid<Dim>& grid, const auto&, const GridGeometry<Dim>&) {
+    const auto& vertices = grid.vertices();
+    std::size_t in_runs = 0, complete = 0;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const auto all = [](const auto& numbers) { return std::ranges::min(numbers) >= 0; };
+      const bool whole = vertices[i].share == 1 && all(vertices[i].cell) && all(vertices[i].neighbour);
+      complete += whole ? 1 : 0;
+      ASSERT_EQ(grid.run_end(i) > i, whole);
+      for (std::size_t j = i; j < grid.run_end(i); ++j) {
+        const auto on = static_cast<std::int32_t>(j - i);
+        for (std::size_t k = 0; k < vertices[i].cell.size(); ++k)
+          ASSERT_EQ(vertices[j].cell[k], vertices[i].cell[k] + on);
+        for (std::size_t n = 0; n < vertices[i].neighbour.size(); ++n)
+          ASSERT_EQ(vertices[j].neighbour[n], vertices[i].neighbour[n] + on);
+        for (int n = 0; n < grid.stencil - grid.centre; ++n) {
+          const auto at = static_cast<std::size_t>(grid.centre + n);
+          ASSERT_EQ(vertices[j].slot[at],
+                    vertices[i].slot[static_cast<std::size_t>(grid.centre)] + on * (grid.stencil - grid.centre) + n);
+        }
+      }
+      if (grid.run_end(i) > i && (i == 0 || grid.run_end(i - 1) <= i)) in_runs += grid.run_end(i) - i;
+    }
+    EXPECT_EQ(in_runs, complete);
   });
 }
 
