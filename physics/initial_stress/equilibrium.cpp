@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,22 +93,6 @@ class Equilibrium {
     base_ = u;
   }
 
-  /// "(3.5, 2) m" of the node whose component is the unknown.
-  std::string place_of(int unknown) const {
-    std::vector<std::string> place;
-    for (const auto& block : scene_.blocks.node_blocks())
-      for (int n = 0; n < block_nodes<Dim>; ++n) {
-        Index<Dim> node = block.first_node;
-        for (int a = 0; a < Dim; ++a) node[a] += n / power(block_width<Dim>, a) % block_width<Dim>;
-        const auto own = unknowns_.find(node);
-        if (std::ranges::find(own, unknown) == own.end()) continue;
-        for (int a = 0; a < Dim; ++a)
-          place.push_back(fmt::format("{:.4g}", scene_.shape->node_position(scene_.grid, a, node[a])));
-        return fmt::format("({}) m", fmt::join(place, ", "));
-      }
-    return "";
-  }
-
   [[noreturn]] void refuse(double carried, const NonlinearReport& report, const Eigen::VectorXd& u) {
     Eigen::VectorXd f(u.size());
     const auto size = static_cast<std::size_t>(u.size());
@@ -122,7 +105,8 @@ class Equilibrium {
                     "{}. If the strength does not suffice, the body would move at once: raise the strength, or start "
                     "from `method: elastic_equilibrium` to compute how it fails. If a surface without cohesion is in "
                     "the way, give it a little, or raise `tolerance`",
-                    100 * carried, report.residual, initial_.tolerance, place_of(static_cast<int>(worst))));
+                    100 * carried, report.residual, initial_.tolerance,
+                    place_of(scene_, unknowns_, static_cast<int>(worst))));
   }
 
   const InitialStress& initial_;

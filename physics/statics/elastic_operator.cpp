@@ -41,7 +41,7 @@ void add_stiffness(const Stencil<Dim>& s, const IsotropicElasticity& e, double v
   }
 }
 
-/// Columns: f_a += m N_a g + V p grad N_a + N_a b, with pressure and body force on the skeleton; m_a += m N_a.
+/// Columns: m N_a g; V p grad N_a + N_a b, with pressure and body force on the skeleton; m N_a.
 template <int Dim>
 void add_nodal(const Scene<Dim>& scene, const SkeletonLoads<Dim>& loads, const Stencil<Dim>& s, std::size_t p,
                Eigen::MatrixXd& nodal) {
@@ -51,9 +51,10 @@ void add_nodal(const Scene<Dim>& scene, const SkeletonLoads<Dim>& loads, const S
   for (int i = 0; i < s.count; ++i)
     for (int d = 0; d < Dim; ++d) {
       const auto a = static_cast<std::size_t>(i);
-      nodal(i * Dim + d, 0) += mass * s.value[a] * scene.gravity[d] + push * s.gradient[a][d];
-      if (loads.body_force[d] != nullptr) nodal(i * Dim + d, 0) += s.value[a] * loads.body_force[d][p];
-      nodal(i * Dim + d, 1) += mass * s.value[a];
+      nodal(i * Dim + d, 0) += mass * s.value[a] * scene.gravity[d];
+      nodal(i * Dim + d, 1) += push * s.gradient[a][d];
+      if (loads.body_force[d] != nullptr) nodal(i * Dim + d, 1) += s.value[a] * loads.body_force[d][p];
+      nodal(i * Dim + d, 2) += mass * s.value[a];
     }
 }
 
@@ -85,8 +86,11 @@ ElasticOperator<Dim>::ElasticOperator(const Scene<Dim>& scene, const Materials<D
     add_cell(order, begin, end, elasticity);
     begin = end;
   }
-  force_ = mass_ = Eigen::VectorXd::Zero(unknowns.count());
-  for (const auto& entry : nodal_entries_) (entry.col() == 0 ? force_ : mass_)[entry.row()] += entry.value();
+  Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(unknowns.count(), 3);
+  for (const auto& entry : nodal_entries_) nodal(entry.row(), entry.col()) += entry.value();
+  weight_ = nodal.col(0);
+  force_ = weight_ + nodal.col(1);
+  mass_ = nodal.col(2);
   spring_ = regularization * slowest_wave_squared(materials) /
             (scene.grid.smallest_cell() * scene.grid.smallest_cell()) * mass_;
 }
@@ -102,7 +106,7 @@ void ElasticOperator<Dim>::add_cell(const std::vector<std::uint32_t>& order, std
     if (k == begin || !same_nodes(own, s)) {
       if (k != begin) add_dense(s, stiffness, nodal);
       stiffness.setZero(own.count * Dim, own.count * Dim);
-      nodal.setZero(own.count * Dim, 2);
+      nodal.setZero(own.count * Dim, 3);
     }
     s = own;
     add_stiffness(s, elasticity(p), scene_.particles.columns.data(scene_.particles.volume)[p], stiffness);
@@ -122,7 +126,7 @@ void ElasticOperator<Dim>::add_dense(const Stencil<Dim>& s, const Eigen::MatrixX
   for (int r = 0; r < s.count * Dim; ++r) {
     const int row = number[static_cast<std::size_t>(r)];
     if (row < 0) continue;
-    for (int c = 0; c < 2; ++c) nodal_entries_.emplace_back(row, c, nodal(r, c));
+    for (int c = 0; c < 3; ++c) nodal_entries_.emplace_back(row, c, nodal(r, c));
     for (int c = 0; c < s.count * Dim; ++c) {
       const int column = number[static_cast<std::size_t>(c)];
       if (column >= 0 && column <= row) entries_.emplace_back(row, column, stiffness(r, c));

@@ -27,8 +27,9 @@ class ElasticOperator {
 
   /// The lower triangle, weak springs included [N/m]; `inertia` is a multiple of the lumped mass that is added [1/s2].
   Eigen::SparseMatrix<double> matrix(double inertia = 0) const;
-  /// Of gravity and loads [N].
+  /// Of gravity and loads [N], and of gravity alone.
   const Eigen::VectorXd& force() const { return force_; }
+  const Eigen::VectorXd& weight() const { return weight_; }
   /// The weak springs of the unknowns, which are in the diagonal [N/m].
   const Eigen::VectorXd& spring() const { return spring_; }
   /// The lumped mass of the unknowns [kg].
@@ -43,8 +44,8 @@ class ElasticOperator {
   const SkeletonLoads<Dim>& loads_;
   Unknowns<Dim>& unknowns_;
   std::vector<Eigen::Triplet<double>> entries_;
-  std::vector<Eigen::Triplet<double>> nodal_entries_;  // (unknown, 0: force, 1: mass)
-  Eigen::VectorXd force_, spring_, mass_;
+  std::vector<Eigen::Triplet<double>> nodal_entries_;  // (unknown, 0: weight, 1: loads, 2: mass)
+  Eigen::VectorXd force_, weight_, spring_, mass_;
 };
 
 extern template class ElasticOperator<2>;

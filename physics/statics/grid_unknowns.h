@@ -2,10 +2,14 @@
 /// particles in order of their cells, stencils.
 #pragma once
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <numeric>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -87,6 +91,23 @@ Stencil<Dim> stencil_at(const Scene<Dim>& scene, std::size_t p) {
   for (std::size_t c = 0; c < components; ++c)
     domain[c] = scene.particles.columns.data(scene.domain, static_cast<int>(c))[p];
   return scene.shape->stencil(scene.grid, x, {domain.data(), components});
+}
+
+/// "(3.5, 2) m": where the node of an unknown is.
+template <int Dim>
+std::string place_of(const Scene<Dim>& scene, const Unknowns<Dim>& unknowns, int unknown) {
+  std::vector<std::string> place;
+  for (const auto& block : scene.blocks.node_blocks())
+    for (int n = 0; n < block_nodes<Dim>; ++n) {
+      Index<Dim> node = block.first_node;
+      for (int a = 0; a < Dim; ++a) node[a] += n / power(block_width<Dim>, a) % block_width<Dim>;
+      const auto own = unknowns.find(node);
+      if (std::find(own.begin(), own.end(), unknown) == own.end()) continue;
+      for (int a = 0; a < Dim; ++a)
+        place.push_back(fmt::format("{:.4g}", scene.shape->node_position(scene.grid, a, node[a])));
+      return fmt::format("({}) m", fmt::join(place, ", "));
+    }
+  return "nowhere";
 }
 
 }  // namespace sluice

@@ -88,7 +88,7 @@ StrainIncrements<Dim> StressTrial<Dim>::increments(std::size_t first) {
 
 template <int Dim>
 bool StressTrial<Dim>::apply(std::span<const double> u, double dt, std::span<double> f) {
-  set_motion(u, dt);
+  set_motion(u, 1 / dt);
   strain(dt);
   if (stress_.f_bar()) average_dilation();
   const bool sound = update(dt);
@@ -117,21 +117,36 @@ bool StressTrial<Dim>::apply(std::span<const double> u, double dt, std::span<dou
 }
 
 template <int Dim>
-void StressTrial<Dim>::set_motion(std::span<const double> u, double dt) {
-  const double rate = 1 / dt;
+void StressTrial<Dim>::set_motion(std::span<const double> values, double share, std::span<const double> change) {
   parallel_for(scene_.blocks.node_blocks().size(), [&](std::size_t b) {
     Lane* const motion = scene_.nodes.motion(b);
     for (int n = 0; n < block_nodes<Dim>; ++n) {
       const auto& own = unknown_[b * block_nodes<Dim> + static_cast<std::size_t>(n)];
-      Lane velocity{};
+      Lane velocity{}, second{};
       for (int a = 0; a < Dim; ++a) {
-        const int i = own[static_cast<std::size_t>(a)];
-        if (i >= 0) velocity[a] = rate * u[static_cast<std::size_t>(i)];
+        if (own[static_cast<std::size_t>(a)] < 0) continue;
+        const auto i = static_cast<std::size_t>(own[static_cast<std::size_t>(a)]);
+        velocity[a] = share * values[i];
+        if (change.empty()) continue;
+        if constexpr (Dim == 2)
+          velocity[2 + a] = change[i];
+        else
+          second[a] = change[i];
       }
       motion[n * motion_lanes<Dim>] = velocity;
-      if constexpr (Dim == 3) motion[n * motion_lanes<Dim> + 1] = Lane{};
+      if constexpr (Dim == 3) motion[n * motion_lanes<Dim> + 1] = second;
     }
   });
+}
+
+template <int Dim>
+void StressTrial<Dim>::get_velocity(std::span<double> values) {
+  for (std::size_t b = 0; b < scene_.blocks.node_blocks().size(); ++b)
+    for (int n = 0; n < block_nodes<Dim>; ++n)
+      for (int a = 0; a < Dim; ++a)
+        if (const int i = unknown_[b * block_nodes<Dim> + static_cast<std::size_t>(n)][static_cast<std::size_t>(a)];
+            i >= 0)
+          values[static_cast<std::size_t>(i)] = scene_.nodes.motion(b)[n * motion_lanes<Dim>][a];
 }
 
 template <int Dim>

@@ -32,12 +32,16 @@ class StressTrial {
   /// that hold the stresses, sum V sigma grad N [N]. False where a particle would invert or a stress is not finite.
   bool apply(std::span<const double> u, double dt, std::span<double> f);
 
+  /// The nodes' velocities, share * `values` of the unknowns, and their changes; `change` may be empty: none.
+  void set_motion(std::span<const double> values, double share, std::span<const double> change = {});
+  /// The velocities that the nodes have.
+  void get_velocity(std::span<double> values);
+
  private:
   struct Kept {
     double* column;
     std::vector<double> values;
   };
-  void set_motion(std::span<const double> u, double dt);
   void strain(double dt);
   void average_dilation();
   bool update(double dt);
