@@ -73,8 +73,11 @@ struct SchemeCase {
   double flip_fraction = 1;  ///< share of FLIP in the FLIP/PIC blend; 1 is pure FLIP, 0 is pure PIC
   int xpic_order = 2;        ///< of XPIC: mappings to the nodes in a step; 1 is PIC
   std::string stress_update = "usl";
-  std::string strain = "jaumann";         ///< how stress follows large strain: jaumann or hencky
-  bool f_bar = false;                     ///< volumetric strain increments averaged over cells
+  std::string integration = "explicit";  ///< explicit, implicit_static or implicit_newmark
+  double tolerance = 1e-6;               ///< implicit steps: of forces out of balance, over the largest force on a node
+  double gravity_ramp = 0;               ///< implicit_static: time over which gravity grows [s]
+  std::string strain = "jaumann";        ///< how stress follows large strain: jaumann or hencky
+  bool f_bar = false;                    ///< volumetric strain increments averaged over cells
   std::optional<double> fixed_time_step;  ///< [s]; absent: computed every step
   Place time_step_place;                  ///< where `time_step` stands in the case file
   double courant = 0.5;                   ///< wave limit: courant * h / (c + |v|)

@@ -338,6 +338,18 @@ Schema<SchemeCase> scheme_schema() {
       .word("stress_update", &S::stress_update, {"usf", "usl", "musl"},
             "When the stress is updated: first in the step, last, or last with velocities mapped a second time.",
             defaults.stress_update)
+      .word("integration", &S::integration, {"explicit", "implicit_static", "implicit_newmark"},
+            "Steps forward in time: explicit; implicit without inertia, from equilibrium to equilibrium; or implicit "
+            "with inertia (Newmark, average acceleration). Implicit steps are for `physics: total_stress` and need "
+            "`time_step`.",
+            defaults.integration)
+      .quantity("tolerance", &S::tolerance, unit::none, above_to(0, 0.1),
+                "For implicit steps: the largest force out of balance on a node, as a share of the largest force on a "
+                "node.",
+                defaults.tolerance)
+      .quantity("gravity_ramp", &S::gravity_ramp, unit::time, at_least(0),
+                "For `implicit_static`: time over which gravity grows from nothing to its full value.",
+                defaults.gravity_ramp)
       .word("strain", &S::strain, {"jaumann", "hencky"},
             "How stress follows large strain: elasticity in rate form, turned with the material; or in logarithmic "
             "strain, "

@@ -84,8 +84,7 @@ void TwoPhase<Dim>::initialise(Scene<Dim>& scene) {
   pores_.set_initial_pressure(scene);
   if (water_.initial.method == InitialPressure::Method::steady_seepage) start_seepage(scene);
   activate_blocks(scene);
-  apply_initial_stress(initial_stress_, scene, stress_.materials(),
-                       pores_.skeleton_loads(scene, outside_, stress_.workspaces()));
+  apply_initial_stress(initial_stress_, scene, stress_, pores_.skeleton_loads(scene, outside_, stress_.workspaces()));
   stress_.initialise(scene);
 }
 
