@@ -248,7 +248,6 @@ struct Dimension {
 Dimension dimension_of(const Primitive& part) {
   if (const auto* const box = std::get_if<Box>(&part)) return {box->min.size(), "box"};
   if (const auto* const half = std::get_if<HalfSpace>(&part)) return {half->point.size(), "half_space"};
-  if (const auto* const circle = std::get_if<Circle>(&part)) return {circle->centre.size(), "circle"};
   if (const auto* const ball = std::get_if<Sphere>(&part)) return {ball->centre.size(), "sphere"};
   return {0, ""};
 }
@@ -276,8 +275,8 @@ bool check_shape(const Primitive& part, const Node& section, std::size_t dimensi
   }
   const auto [found, shape] = dimension_of(part);
   if (found == 0 || found == dimension) return true;
-  problems.add(place_of(section, shape), fmt::format("{}: found {} components; the grid has {} dimensions{}", shape,
-                                                     found, dimension, shape == "circle" ? "; take sphere" : ""));
+  problems.add(place_of(section, shape),
+               fmt::format("{}: found {} components; the grid has {} dimensions", shape, found, dimension));
   return false;
 }
 

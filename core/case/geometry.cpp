@@ -198,6 +198,23 @@ Bounds bounds_of(const Sphere& sphere, std::size_t) {
   return bounds;
 }
 
+// ---- circle: along all axes but the first two without end ----
+
+bool contains(const Circle& circle, std::span<const double> x) {
+  return contains(static_cast<const Sphere&>(circle), x.first(2));
+}
+
+double distance(const Circle& circle, std::span<const double> x) {
+  return distance(static_cast<const Sphere&>(circle), x.first(2));
+}
+
+Bounds bounds_of(const Circle& circle, std::size_t dimension) {
+  Bounds bounds = everywhere(dimension);
+  const Bounds disc = bounds_of(static_cast<const Sphere&>(circle), 2);
+  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) std::ranges::copy(disc[side], bounds[side].begin());
+  return bounds;
+}
+
 // ---- layer ----
 
 bool contains(const Layer& layer, std::span<const double> x) {

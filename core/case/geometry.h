@@ -36,6 +36,7 @@ struct Sphere {
   std::vector<double> centre;
   double radius = 0;
 };
+/// The same in the plane of the first two axes: in 3-D an upright cylinder without end.
 struct Circle : Sphere {};
 
 /// Between two levels along the last axis, half-open: bottom <= x < top. One of them may be absent.

@@ -48,6 +48,10 @@ Scene<Dim>::Scene(const Case& definition)
   if (wants_area())
     unit_pressure = particles.columns.declare(
         {"unit_pressure", "1", 2, Role::derived, "Ones and zeros: a stress of one, and none.", false});
+  if (transfer.affine && !transfer.gradient && !shape->takes_moments())
+    throw CaseError(definition.source.place, "scheme: transfer '" + scheme.transfer +
+                                                 "' needs moments of the shape functions, which shape '" +
+                                                 scheme.shape + "' does not have; take tpic, xpic or flip");
   if (const ColumnSpec spec = shape->domain(); spec.components > 0) domain = particles.columns.declare(spec);
 }
 

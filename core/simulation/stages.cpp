@@ -202,7 +202,7 @@ VelocityShares velocity_shares(const Scene<Dim>& scene) {
 }  // namespace
 
 template <int Dim>
-MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_column) {
+MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_column, ColumnId domain_column) {
   Columns& columns = scene.particles.columns;
   MotionUpdate<Dim> update{};
   update.dt = dt;
@@ -211,6 +211,8 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
     update.velocity[a] = columns.data(scene.particles.velocity, a);
     update.position[a] = columns.data(position_column, a);
   }
+  const int components = domain_column.index < 0 ? 0 : columns.spec(domain_column).components;
+  for (int c = 0; c < components; ++c) update.domain[static_cast<std::size_t>(c)] = columns.data(domain_column, c);
   update.affine_is_gradient = scene.transfer.gradient;
   if (scene.transfer.affine)
     for (int c = 0; c < Dim * Dim; ++c) update.affine[c] = columns.data(scene.affine, c);
@@ -226,7 +228,7 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
   template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items, NodeFields<Dim>*); \
   template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*, Items);             \
   template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&);                \
-  template MotionUpdate<Dim> motion_update<Dim>(Scene<Dim>&, double, ColumnId);
+  template MotionUpdate<Dim> motion_update<Dim>(Scene<Dim>&, double, ColumnId, ColumnId);
 SLUICE_INSTANTIATE(2)
 SLUICE_INSTANTIATE(3)
 #undef SLUICE_INSTANTIATE

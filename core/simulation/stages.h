@@ -70,8 +70,9 @@ void for_each_block(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, 
 template <int Dim>
 void prepare(const Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces);
 
-/// Nodes to particles: velocity, position, affine field, eqs. (19)-(21). Positions go to `position_column`.
+/// Nodes to particles: velocity, position, affine field, eqs. (19)-(21). Positions go to `position_column`, domains
+/// that deform to `domain_column`; without a column they stay as they are.
 template <int Dim>
-MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_column);
+MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_column, ColumnId domain_column = {});
 
 }  // namespace sluice
