@@ -89,11 +89,10 @@ struct ImplicitStep<Dim>::Forces {
     const Eigen::Map<const Eigen::VectorXd> now(u.data(), static_cast<Eigen::Index>(u.size()));
     Eigen::Map<Eigen::VectorXd> out(f.data(), static_cast<Eigen::Index>(f.size()));
     if (!trial.apply(u, dt, f)) return false;
-    out += elastic.spring().cwiseProduct(now);
-    if (inertia > 0)
+    if (inertia > 0)  // which holds what nothing else holds
       out += inside_at_start - 2 * outside + inertia * elastic.mass().cwiseProduct(now - dt * velocity);
     else
-      out -= outside;
+      out += elastic.spring().cwiseProduct(now) - outside;
     return true;
   }
 };
