@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #include "core/parallel/multitarget.h"
 #include "core/transfer/shape_kernels.h"
@@ -47,6 +48,16 @@ struct ChunkWeights {
   alignas(64) double affine[Dim][nodes][chunk_size];    ///< [1/m]
   alignas(64) std::int32_t base[chunk_size];
 };
+
+/// What the loops weigh with: ChunkWeights, or CornerWeights (corner_kernels.h).
+template <int Dim, class Shape>
+struct WeightsOf {
+  using type = ChunkWeights<Dim, Shape>;
+};
+
+/// Of shapes by corners: corner_kernels.h.
+template <int Dim, class Shape>
+Stencil<Dim> corner_stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x, std::span<const double> domain);
 
 template <int Dim, class Shape>
 inline constexpr int tile_row = tile_width<Dim>(Shape::reach);
@@ -245,7 +256,7 @@ SLUICE_MULTITARGET void scatter(const ScatterInput<Dim>& in, double impulse_dt, 
   if constexpr (momentum) std::memset(static_cast<void*>(tile), 0, tile_bytes);
   if constexpr (force) std::memset(static_cast<void*>(force_tile), 0, tile_bytes);
 
-  ChunkWeights<Dim, Shape> w;
+  typename WeightsOf<Dim, Shape>::type w;
   for (std::uint32_t begin = in.particles.begin; begin < in.particles.end; begin += chunk_size) {
     const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, in.particles.end - begin));
     weigh<Dim, Shape, Affine, false>(in.particles, begin, count, w);
@@ -262,7 +273,7 @@ SLUICE_MULTITARGET void scatter(const ScatterInput<Dim>& in, double impulse_dt, 
           if constexpr (Dim == 3) slope[b][3] = m * in.affine[static_cast<std::size_t>(2 * Dim + b)][p];
         }
       }
-      if constexpr (Dim == 2 && momentum && force) {
+      if constexpr (Dim == 2 && momentum && force && std::is_same_v<decltype(w), ChunkWeights<Dim, Shape>>) {
         add_both_to_nodes<Shape, Affine>(w, k, mass_and_momentum<Dim>(in.mass[p], in.velocity, p), slope,
                                          Body ? body_force<Dim>(in.body_force, p) : Lane{}, flux, tile, force_tile);
         continue;
@@ -340,9 +351,8 @@ struct ChunkGathered {
   }
 };
 
-template <int Dim, class Shape, bool Value, bool Gradient, bool Affine>
-SLUICE_ALWAYS_INLINE void sum_chunk(const ChunkWeights<Dim, Shape>& w, int count, const Lane* motion_tile,
-                                    ChunkGathered<Dim>& out) {
+template <int Dim, class Shape, bool Value, bool Gradient, bool Affine, class Weights>
+SLUICE_ALWAYS_INLINE void sum_chunk(const Weights& w, int count, const Lane* motion_tile, ChunkGathered<Dim>& out) {
   for (int p = 0; p < count; ++p) {
     const Gathered<Dim> g = sum_nodes<Dim, Shape, Value, Gradient, Affine>(w, p, motion_tile);
     if constexpr (Value)
@@ -408,7 +418,7 @@ SLUICE_ALWAYS_INLINE double write_strain(const ChunkGathered<Dim>& g, int count,
 template <int Dim, class Shape>
 SLUICE_MULTITARGET double gather_strain(const BlockParticles<Dim>& block, const Lane* motion_tile, double dt,
                                         const StrainIncrements<Dim>& out) {
-  ChunkWeights<Dim, Shape> w;
+  typename WeightsOf<Dim, Shape>::type w;
   ChunkGathered<Dim> g;
   double largest = 0;
   for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
@@ -479,20 +489,23 @@ template <int Dim, class Shape, AffineField Field, bool Strain>
 SLUICE_MULTITARGET MotionReport gather_motion(const BlockParticles<Dim>& block, const Lane* motion_tile,
                                               const MotionUpdate<Dim>& update) {
   constexpr bool affine_is_gradient = Field == AffineField::gradient, own_affine = Field == AffineField::moment;
-  ChunkWeights<Dim, Shape> w;
+  typename WeightsOf<Dim, Shape>::type w;
   ChunkGathered<Dim> g;
   MotionReport report;
   double largest_strain = 0;
   for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
     const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
     weigh<Dim, Shape, false, own_affine>(block, begin, count, w);
-    sum_chunk<Dim, Shape, true, Strain || affine_is_gradient, own_affine>(w, count, motion_tile, g);
+    sum_chunk<Dim, Shape, true, Strain || affine_is_gradient || Shape::by_corners, own_affine>(w, count, motion_tile,
+                                                                                               g);
     if constexpr (affine_is_gradient)
       for (int a = 0; a < Dim; ++a) std::copy_n(g.gradient[a], count, g.affine[a]);
     if constexpr (Strain)
       largest_strain =
           std::max(largest_strain, write_strain<Dim>(g, count, update.dt, begin - block.begin, *update.strain));
     move<Dim, Field != AffineField::none>(g, block, begin, count, update, report);
+    if constexpr (Shape::by_corners)
+      if (update.domain[0] != nullptr) move_domains<Dim, Shape>(w, g, block, begin, count, motion_tile, update);
   }
   if constexpr (Strain) report.largest_strain_rate = largest_strain / update.dt;
   return report;
@@ -504,7 +517,7 @@ template <int Dim, class Shape>
 SLUICE_MULTITARGET void map_again(const BlockParticles<Dim>& block, const double* mass, const Lane* motion_tile,
                                   Lane* tile) {
   std::memset(static_cast<void*>(tile), 0, sizeof(Lane) * power(tile_row<Dim, Shape>, Dim));
-  ChunkWeights<Dim, Shape> w;
+  typename WeightsOf<Dim, Shape>::type w;
   for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
     const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
     weigh<Dim, Shape, false, false>(block, begin, count, w);
@@ -526,7 +539,7 @@ SLUICE_ALWAYS_INLINE void write_component(const Lane* lanes, int component, int 
 
 template <int Dim, class Shape>
 SLUICE_MULTITARGET void gather_field(const BlockParticles<Dim>& block, const Lane* tile, const FieldGather<Dim>& out) {
-  ChunkWeights<Dim, Shape> w;
+  typename WeightsOf<Dim, Shape>::type w;
   ChunkGathered<Dim> g;
   for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
     const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
@@ -583,7 +596,7 @@ template <int Dim, class Shape>
 SLUICE_MULTITARGET void gather_divergence(const BlockParticles<Dim>& block, const Lane* motion_tile, double* divergence,
                                           const std::array<double*, Dim>& change) {
   constexpr int lanes = motion_lanes<Dim>, numbers = lanes * lane_width;
-  ChunkWeights<Dim, Shape> w;
+  typename WeightsOf<Dim, Shape>::type w;
   alignas(64) Lane sums[chunk_size * lanes];
   const double* __restrict sum = reinterpret_cast<const double*>(sums);
   for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
@@ -614,6 +627,7 @@ SLUICE_MULTITARGET void gather_divergence(const BlockParticles<Dim>& block, cons
 ///   affine(place, value, distance, weight)   APIC's weights [1/cells]; moment_weights does, if nothing is shorter
 ///   node_offset(i, n)  place of node i on an axis of n cells, in cells from the lower wall
 struct PointShape {
+  static constexpr bool by_corners = false;          ///< see corner_kernels.h
   static constexpr bool sized = false;               ///< particles have a size, the first number of their domain
   static constexpr bool moments_are_slopes = false;  ///< APIC's affine field is the gradient
   static ColumnSpec domain(int) { return {"domain", "1", 0, Role::state, ""}; }
@@ -634,12 +648,22 @@ class ShapeKernelsOf final : public ShapeKernels<Dim> {
   }
 
   ColumnSpec domain() const override { return Shape::domain(Dim); }
-  void fill_domain(const GridGeometry<Dim>&, double share, std::span<double> numbers) const override {
+  bool takes_moments() const override { return !Shape::by_corners; }
+  void fill_domain(const GridGeometry<Dim>& grid, double share, std::span<double> numbers) const override {
     if constexpr (Shape::sized) numbers[0] = 0.5 * share;
+    if constexpr (Shape::by_corners) Shape::template fill<Dim>(grid, share, numbers.data());
   }
 
   Stencil<Dim> stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x,
                        std::span<const double> domain) const override {
+    if constexpr (Shape::by_corners)
+      return kernel::corner_stencil<Dim, Shape>(grid, x, domain);
+    else
+      return axis_stencil(grid, x, domain);
+  }
+
+  static Stencil<Dim> axis_stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x,
+                                   std::span<const double> domain) {
     constexpr int nodes = Shape::nodes;
     double value[Dim][nodes], slope[Dim][nodes], distance[nodes];
     Index<Dim> cell = grid.cell_of(x);

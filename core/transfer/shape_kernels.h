@@ -78,6 +78,7 @@ struct MotionUpdate {
   std::array<double*, Dim> position;        ///< out: position + dt * velocity of the nodes
   std::array<double*, Dim * Dim> affine{};  ///< out: C of APIC; null without it
   bool affine_is_gradient = false;          ///< C is the velocity gradient (TPIC)
+  std::array<double*, domain_capacity<Dim>> domain{};  ///< out, for domains that deform; nulls: they stay as they are
   const StrainIncrements<Dim>* strain =
       nullptr;  ///< out, indexed from 0 at the block's first particle; null: not wanted
 };
@@ -125,6 +126,9 @@ class ShapeKernels {
   virtual ColumnSpec domain() const { return {"domain", "1", 0, Role::state, ""}; }
   /// Its numbers for a particle that fills `share` of the width of its cell on every axis.
   virtual void fill_domain(const GridGeometry<Dim>& /*grid*/, double /*share*/, std::span<double> /*numbers*/) const {}
+
+  /// APIC's weights are products over the axes.
+  virtual bool takes_moments() const { return true; }
 
   virtual Stencil<Dim> stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x,
                                std::span<const double> domain = {}) const = 0;

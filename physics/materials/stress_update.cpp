@@ -26,9 +26,13 @@ template <int Dim>
 void StressUpdate<Dim>::declare(Columns& particles, ColumnId inertia) {
   inertia_ = inertia;
   materials_.declare(particles);
-  if (timing_ == StressTiming::musl)
+  if (timing_ == StressTiming::musl) {
     next_position_ = particles.declare({"next_position", "m", Dim, Role::derived,
                                         "Position at the end of the step, while stresses are updated.", false});
+    if (particles.contains("domain"))
+      next_domain_ = particles.declare({"next_domain", "m", particles.spec(particles.find("domain")).components,
+                                        Role::derived, "Domain at the end of the step.", false});
+  }
   if (f_bar_) {
     strain_increment_ = particles.declare({"strain_increment", "1", symmetric_components<Dim>, Role::derived,
                                            "Strain increment of the step, before F-bar.", false});
@@ -42,7 +46,8 @@ void StressUpdate<Dim>::declare(Columns& particles, ColumnId inertia) {
 template <int Dim>
 void StressUpdate<Dim>::gather_motion(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
   filter_.add(sweep, scene);
-  sweep.over_particles([this, &scene, dt](Items some) { move(scene, dt, scene.particles.position, some); });
+  sweep.over_particles(
+      [this, &scene, dt](Items some) { move(scene, dt, scene.particles.position, scene.domain, some); });
 }
 
 template <int Dim>
@@ -55,9 +60,9 @@ void StressUpdate<Dim>::gather_motion_and_update(Sweep<Dim>& sweep, Scene<Dim>& 
 template <int Dim>
 void StressUpdate<Dim>::gather_motion_and_map_again(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
   filter_.add(sweep, scene);
-  sweep.over_particles([this, &scene, dt](Items some) { move(scene, dt, next_position_, some); });
+  sweep.over_particles([this, &scene, dt](Items some) { move(scene, dt, next_position_, next_domain_, some); });
   sweep.over_particles([&scene](Items some) { scatter(scene, ScatterWhat::momentum, 0, some); });
-  sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, some); });
+  sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, Moment::now, some); });
   update(sweep, scene, dt);
   sweep.over_particles([this, &scene](Items some) { take_next_position(scene, some); });
 }
@@ -72,9 +77,9 @@ void StressUpdate<Dim>::update(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt, 
 // ---- the stages ----
 
 template <int Dim>
-void StressUpdate<Dim>::move(Scene<Dim>& scene, double dt, ColumnId positions, Items some) {
+void StressUpdate<Dim>::move(Scene<Dim>& scene, double dt, ColumnId positions, ColumnId domains, Items some) {
   const auto timing = scene.clock.time(Stage::gather);
-  const MotionUpdate<Dim> update = motion_update(scene, dt, positions);
+  const MotionUpdate<Dim> update = motion_update(scene, dt, positions, domains);
   const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
     const double strain_rate = motion_[b].largest_strain_rate;  // of the stress update, if that came first
@@ -87,7 +92,7 @@ void StressUpdate<Dim>::move(Scene<Dim>& scene, double dt, ColumnId positions, I
 template <int Dim>
 void StressUpdate<Dim>::move_and_strain(Scene<Dim>& scene, double dt, Items some) {
   const auto timing = scene.clock.time(Stage::gather);
-  const MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position);
+  const MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position, scene.domain);
   const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     const StrainIncrements<Dim> strain = f_bar_ ? kept_strain(scene, block.begin) : work.strain;
     MotionUpdate<Dim> own = update;
@@ -153,9 +158,13 @@ void StressUpdate<Dim>::take_next_position(Scene<Dim>& scene, Items some) {
   Columns& columns = scene.particles.columns;
   parallel_for(some, [&](std::size_t b) {
     const auto& block = scene.blocks.particle_blocks()[b];
-    for (int a = 0; a < Dim; ++a)
-      std::copy(columns.data(next_position_, a) + block.begin, columns.data(next_position_, a) + block.end,
-                columns.data(scene.particles.position, a) + block.begin);
+    const auto take = [&](ColumnId next, ColumnId column, int components) {
+      for (int c = 0; c < components; ++c)
+        std::copy(columns.data(next, c) + block.begin, columns.data(next, c) + block.end,
+                  columns.data(column, c) + block.begin);
+    };
+    take(next_position_, scene.particles.position, Dim);
+    if (next_domain_.index >= 0) take(next_domain_, scene.domain, scene.domain_components());
   });
 }
 

@@ -79,7 +79,7 @@ class StressUpdate {
     add(sweep);
     sweep.run();
   }
-  void move(Scene<Dim>& scene, double dt, ColumnId positions, Items some);
+  void move(Scene<Dim>& scene, double dt, ColumnId positions, ColumnId domains, Items some);
   void move_and_strain(Scene<Dim>& scene, double dt, Items some);
   void strain(Scene<Dim>& scene, double dt, const AfterBlock& after_block, Items some);
   void apply_f_bar(Scene<Dim>& scene, double dt, const AfterBlock& after_block, Items some);
@@ -94,7 +94,7 @@ class StressUpdate {
   bool f_bar_;
 
   ColumnId inertia_;
-  ColumnId next_position_;                      // MUSL: positions change after the stress update
+  ColumnId next_position_, next_domain_;        // MUSL: positions change after the stress update
   ColumnId strain_increment_, spin_increment_;  // F-bar: strains wait for the means of the cells
   CellAverages<Dim> cells_;
   VelocityFilter<Dim> filter_;

@@ -17,7 +17,8 @@
 
 namespace sluice {
 
-/// Degrees of freedom: the components of the nodes that particles reach, from `first` on, less those that faces fix.
+/// Degrees of freedom: the components of the nodes that particles reach, from `first` on, less those that faces and
+/// obstacles fix.
 template <int Dim>
 class Unknowns {
  public:
@@ -51,10 +52,11 @@ class Unknowns {
     for (int axis = 0; axis < Dim; ++axis)
       for (int side = 0; side < 2; ++side) {
         const FaceCase& face = scene_.faces.face(axis, side);
-        if (node[axis] != scene_.faces.wall_node(axis, side) || face.normal == FaceCase::Normal::free) continue;
+        const bool free = face.normal == FaceCase::Normal::free && !face.absorbing;
+        if (node[axis] != scene_.faces.wall_node(axis, side) || free) continue;
         if (component == axis || face.tangential != FaceCase::Tangential::free) return true;
       }
-    return false;
+    return scene_.obstacles.any() && scene_.obstacles.holds(node, component);
   }
 
   const Scene<Dim>& scene_;

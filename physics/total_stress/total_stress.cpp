@@ -128,11 +128,12 @@ void TotalStress<Dim>::step_usf(Scene<Dim>& scene, double dt) {
       };
       for_each_block(scene, stress_.workspaces(), body, some);
     });
-  sweep.over_nodes([&](Items some) { velocity_from_momentum(scene, some); });
+  sweep.over_nodes([&](Items some) { velocity_from_momentum(scene, Moment::before, some); });
   stress_.update(sweep, scene, scene.previous_dt, [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
     pressed_.add_work(scene, b, block);  // that of the volumes
     scatter_forces(scene, b, block, work, ScatterWhat::force);
   });
+  if (scene.wants_area()) sweep.over_particles([&](Items some) { scatter_surface(scene, some); });
   sweep.over_nodes([&](Items some) { advance_nodes(scene, scene.kick(dt), false, true, some, loads_alone(scene)); });
   stress_.gather_motion(sweep, scene, dt);
   add_load_work(sweep, scene);
@@ -175,11 +176,12 @@ void TotalStress<Dim>::step_implicit(Scene<Dim>& scene, double dt) {
   pressed_.end_step();
 }
 
-/// With APIC nobody asks for the nodes' change of velocity: momentum and impulse can share a lane. Not with linear
-/// functions, where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::smooth).
+/// With APIC nobody but dashpots asks for the nodes' change of velocity: momentum and impulse can share a lane. Not
+/// with linear functions, where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::smooth).
 template <int Dim>
 void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
   const double kick = scene.kick(dt);
+  if (scene.wants_area()) sweep.over_particles([&scene](Items some) { scatter_surface(scene, some); });
   if (outside_.any()) {
     sweep.over_particles([this, &scene](Items some) {
       const auto timing = scene.clock.time(Stage::scatter);
@@ -192,7 +194,7 @@ void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim
         [this, &scene, kick](Items some) { advance_nodes(scene, kick, true, true, some, loads_alone(scene)); });
     return;
   }
-  const bool together = scene.transfer.affine && scene.shape->smooth();
+  const bool together = scene.transfer.affine && scene.shape->smooth() && !scene.dashpots.any();
   const auto what = together ? ScatterWhat::momentum_and_impulse : ScatterWhat::momentum_and_force;
   sweep.over_particles([&scene, what, kick](Items some) { scatter(scene, what, kick, some); });
   sweep.over_nodes([&scene, together, kick](Items some) { advance_nodes(scene, kick, true, !together, some); });

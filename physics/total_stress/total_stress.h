@@ -50,7 +50,7 @@ class TotalStress final : public PhysicsModule<Dim> {
   void add_load_work(Sweep<Dim>& sweep, Scene<Dim>& scene);
   /// The forces of loads alone, or null where no face has friction.
   NodeFields<Dim>* loads_alone(const Scene<Dim>& scene) { return rough_under_load(scene) ? &wall_ : nullptr; }
-  bool rough_under_load(const Scene<Dim>& scene) const { return outside_.any() && scene.faces.any_friction(); }
+  bool rough_under_load(const Scene<Dim>& scene) const { return outside_.any() && scene.any_friction(); }
 
   StressUpdate<Dim> stress_;
   ImplicitStep<Dim> implicit_;

@@ -54,6 +54,13 @@ Stencil<Dim> stencil(const ShapeKernels<Dim>& shape, const GridGeometry<Dim>& g,
   return shape.stencil(g, x, domain);
 }
 
+/// Round-off of gradients, over that of products over the axes: domains with corners are drawn in at a wall, to 1e-4 of
+/// a cell at the wall itself, and their gradients are differences over that.
+template <int Dim>
+double round_off(const ShapeKernels<Dim>& shape) {
+  return shape.takes_moments() ? 1 : 1e3;
+}
+
 template <int Dim>
 void expect_linear_reproduction(const ShapeKernels<Dim>& shape, const GridGeometry<Dim>& g) {
   for (const auto& x : points(g)) {
@@ -76,9 +83,9 @@ void expect_linear_reproduction(const ShapeKernels<Dim>& shape, const GridGeomet
     }
     EXPECT_NEAR(unity, 1, 1e-14);
     for (int a = 0; a < Dim; ++a) {
-      EXPECT_NEAR(gradient_of_one[a], 0, 1e-13);
+      EXPECT_NEAR(gradient_of_one[a], 0, 1e-13 * round_off<Dim>(shape));
       EXPECT_NEAR(place[a], x[a], 1e-14);
-      for (int b = 0; b < Dim; ++b) EXPECT_NEAR(gradient_of_place[a][b], a == b ? 1 : 0, 1e-12);
+      for (int b = 0; b < Dim; ++b) EXPECT_NEAR(gradient_of_place[a][b], a == b ? 1 : 0, 1e-12 * round_off<Dim>(shape));
     }
   }
 }
@@ -94,9 +101,11 @@ std::map<Index<Dim>, double> values(const ShapeKernels<Dim>& shape, const GridGe
 
 // Central differences of width 1e-6 cells: errors of 1e-9 of the slope from round-off, 1e-12 from the third derivative.
 // Particles with a size shrink towards a wall, and their slope is the mean over the particle, not the derivative: they
-// are looked at away from walls.
+// are looked at away from walls. With CPDI the slope is the mean gradient of a function that is linear between the
+// corners of the particle, and not the derivative of the value: left out.
 template <int Dim>
 void expect_gradients(const ShapeKernels<Dim>& shape, const GridGeometry<Dim>& g) {
+  if (!shape.takes_moments()) return;
   std::mt19937 generator(2);
   std::uniform_real_distribution<double> uniform(0.01, 0.99);
   for (int i = 0; i < 300; ++i) {
@@ -117,6 +126,56 @@ void expect_gradients(const ShapeKernels<Dim>& shape, const GridGeometry<Dim>& g
         EXPECT_NEAR(s.gradient[k][a], (above[s.node[k]] - below[s.node[k]]) / (2 * step), 1e-8 / g.cell[a]);
       }
     }
+  }
+}
+
+// Domains that deform, sheared and stretched beyond their cell: constants and linear fields and their gradients, up to
+// the wall. No value is negative; 1e-8 for a particle on the wall itself.
+template <int Dim>
+void expect_reproduction_by_sheared_domains(const std::string& name) {
+  const auto shape = shape_registry<Dim>().find(name, {})();
+  const auto g = grid<Dim>(5);
+  std::array<double, domain_capacity<Dim>> domain{};
+  shape->fill_domain(g, 0.5, domain);
+  const int components = shape->domain().components;
+  for (int n = 0; n < components; n += Dim) {
+    const double x = domain[static_cast<std::size_t>(n)];
+    for (int a = 1; a < Dim; ++a) domain[static_cast<std::size_t>(n + a)] += 0.7 * a * x;  // shear
+    domain[static_cast<std::size_t>(n)] *= 2.5;
+  }
+  const auto on_wall = [&](const Vector<Dim>& x) {
+    bool on = false;
+    for (int a = 0; a < Dim; ++a) on = on || std::min(x[a] - g.min[a], g.max[a] - x[a]) < 1e-4 * g.cell[a];
+    return on;
+  };
+  for (const auto& x : points(g)) {
+    const Stencil<Dim> s = shape->stencil(g, x, domain);
+    double unity = 0;
+    Vector<Dim> place{};
+    std::array<Vector<Dim>, Dim> gradient{};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(s.count); ++i) {
+      EXPECT_GE(s.value[i], on_wall(x) ? -1e-8 : -1e-15);
+      unity += s.value[i];
+      for (int a = 0; a < Dim; ++a) {
+        ASSERT_GE(s.node[i][a], 0);
+        ASSERT_LT(s.node[i][a], g.cells[a] + shape->reach());
+        const double at = shape->node_position(g, a, s.node[i][a]);
+        place[a] += s.value[i] * at;
+        for (int b = 0; b < Dim; ++b) gradient[a][b] += s.gradient[i][b] * at;
+      }
+    }
+    EXPECT_NEAR(unity, 1, 1e-14);
+    for (int a = 0; a < Dim; ++a) {
+      EXPECT_NEAR(place[a], x[a], 1e-14);
+      for (int b = 0; b < Dim; ++b) EXPECT_NEAR(gradient[a][b], a == b ? 1 : 0, 1e-12 * round_off<Dim>(*shape));
+    }
+  }
+}
+
+TEST(ShearedDomains, ReproduceLinearFields) {
+  for (const char* name : {"cpdi", "cpdi2"}) {
+    expect_reproduction_by_sheared_domains<2>(name);
+    expect_reproduction_by_sheared_domains<3>(name);
   }
 }
 

@@ -64,13 +64,21 @@ struct Fixture {
     fill_domains();
   }
 
+  /// Of gradients, over that of products over the axes: see shape_functions.cpp.
+  double round_off() const { return shape.takes_moments() ? 1 : 1e3; }
+  /// Domains that deform are distorted, by up to a tenth of half of the least cell; sizes stay.
+  double distortion() {
+    static std::mt19937 generator(23);
+    static std::uniform_real_distribution<double> uniform(-0.01, 0.01);
+    return shape.takes_moments() ? 0 : uniform(generator);
+  }
   /// One to three particles in the width of a cell.
   void fill_domains() {
     std::array<double, domain_capacity<Dim>> numbers{};
     for (auto& column : domain) column.resize(particles + 64);
     for (std::size_t p = 0; p < particles + 64; ++p) {
       shape.fill_domain(grid, 1.0 / static_cast<double>(1 + p % 3), numbers);
-      for (std::size_t k = 0; k < numbers.size(); ++k) domain[k][p] = numbers[k];
+      for (std::size_t k = 0; k < numbers.size(); ++k) domain[k][p] = numbers[k] + distortion();
     }
   }
   Stencil<Dim> stencil(std::size_t p) const {
@@ -169,11 +177,13 @@ void expect_scatter(const Fixture<Dim>& f, bool affine) {
         const auto component = static_cast<std::size_t>(k);
         const double impulse = what == momentum_and_impulse ? dt * dense.force[i][component] : 0;
         if (what != force) {
-          ASSERT_NEAR(tile.lanes.data()[i][k], dense.momentum[i][component] + impulse, 1e-11)
+          ASSERT_NEAR(tile.lanes.data()[i][k], dense.momentum[i][component] + impulse,
+                      (what == momentum_and_impulse ? f.round_off() : 1) * 1e-11)
               << "node " << i << ", " << k;
         }
         if (what == force || what == momentum_and_force) {
-          ASSERT_NEAR(force_tile.lanes.data()[i][k], dense.force[i][component], 1e-9) << "node " << i << ", " << k;
+          ASSERT_NEAR(force_tile.lanes.data()[i][k], dense.force[i][component], f.round_off() * 1e-9)
+              << "node " << i << ", " << k;
         }
       }
   }
@@ -247,7 +257,7 @@ void expect_gather(Fixture<Dim>& f, Affine kind, bool with_strain) {
       for (int b = 0; b < Dim && affine; ++b) {
         const double c = f.c[static_cast<std::size_t>(a * Dim + b)][p];
         if (kind == Affine::tpic) {
-          ASSERT_NEAR(c, gradient[a][b], 1e-12 / f.grid.cell[b]) << "particle " << p;
+          ASSERT_NEAR(c, gradient[a][b], f.round_off() * 1e-12 / f.grid.cell[b]) << "particle " << p;
         } else if (square[b] > 1e-6 * f.grid.cell[b] * f.grid.cell[b]) {  // C = B D^-1, where D can be inverted
           ASSERT_NEAR(c, moment[a][b] / square[b], 1e-9 / f.grid.cell[b]) << "particle " << p;
         }
@@ -256,7 +266,8 @@ void expect_gather(Fixture<Dim>& f, Affine kind, bool with_strain) {
     }
     fastest = std::max(fastest, squared);
     for (int a = 0; a < Dim; ++a) {
-      ASSERT_NEAR(f.strain[static_cast<std::size_t>(a)][p], dt * gradient[a][a], 1e-13 / f.grid.cell[a]);
+      ASSERT_NEAR(f.strain[static_cast<std::size_t>(a)][p], dt * gradient[a][a],
+                  f.round_off() * 1e-13 / f.grid.cell[a]);
     }
     if (Dim == 2) {
       ASSERT_EQ(f.strain[2][p], 0);
@@ -264,9 +275,9 @@ void expect_gather(Fixture<Dim>& f, Affine kind, bool with_strain) {
     const int pairs[3][2] = {{0, 1}, {1, 2}, {0, 2}};
     for (std::size_t k = 0; k < (Dim == 2 ? 1u : 3u); ++k) {
       const auto a = static_cast<std::size_t>(pairs[k][0]), b = static_cast<std::size_t>(pairs[k][1]);
-      ASSERT_NEAR(f.strain[3 + k][p], dt / 2 * (gradient[a][b] + gradient[b][a]), 1e-12);
+      ASSERT_NEAR(f.strain[3 + k][p], dt / 2 * (gradient[a][b] + gradient[b][a]), f.round_off() * 1e-12);
       const double spin = dt / 2 * (gradient[a][b] - gradient[b][a]);  // w_ab; 2-D stores w_yx
-      ASSERT_NEAR(f.spin[k][p], Dim == 2 ? -spin : spin, 1e-12);
+      ASSERT_NEAR(f.spin[k][p], Dim == 2 ? -spin : spin, f.round_off() * 1e-12);
     }
   }
   EXPECT_NEAR(report.largest_speed_squared, fastest, 1e-12 * fastest);
@@ -292,7 +303,8 @@ void expect_body_force(const Fixture<Dim>& f) {
   tile.fill(size, 7);
   f.shape.scatter(ScatterWhat::force, in, 0, nullptr, tile.lanes.data());
   for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t k = 0; k < Dim + 1; ++k) ASSERT_NEAR(tile.lanes.data()[i][k], dense.force[i][k], 1e-9);
+    for (std::size_t k = 0; k < Dim + 1; ++k)
+      ASSERT_NEAR(tile.lanes.data()[i][k], dense.force[i][k], f.round_off() * 1e-9);
 }
 
 /// A tile of motion lanes full of numbers, and what its nodes hold: component `a` of lane `lane`.
@@ -334,7 +346,8 @@ void expect_field(const Fixture<Dim>& f) {
       for (int a = 0; a < Dim; ++a) slope[a] += s.gradient[i][a] * field.at(s.node[i], 0, 0);
     }
     ASSERT_NEAR(value[p], sum, 1e-13) << "particle " << p;
-    for (int a = 0; a < Dim; ++a) ASSERT_NEAR(gradient[a][p], slope[a], 1e-13 / f.grid.cell[a]) << "particle " << p;
+    for (int a = 0; a < Dim; ++a)
+      ASSERT_NEAR(gradient[a][p], slope[a], f.round_off() * 1e-13 / f.grid.cell[a]) << "particle " << p;
   }
 }
 
@@ -360,7 +373,7 @@ void expect_divergence(const Fixture<Dim>& f) {
         dv[a] += s.value[i] * motion.at(s.node[i], motion_lanes<Dim> - 1, Dim == 2 ? 2 + a : a);
       }
     }
-    ASSERT_NEAR(divergence[p], sum, 1e-12 / f.grid.cell[0]) << "particle " << p;
+    ASSERT_NEAR(divergence[p], sum, f.round_off() * 1e-12 / f.grid.cell[0]) << "particle " << p;
     for (int a = 0; a < Dim; ++a) ASSERT_NEAR(change[a][p], dv[a], 1e-13) << "particle " << p;
   }
 }
@@ -408,6 +421,7 @@ class Transfer : public ::testing::TestWithParam<std::string> {
     for (const int place : {0, 1, 2}) {
       SCOPED_TRACE(std::to_string(Dim) + "-D, block " + std::to_string(place));
       for (const Affine affine : {Affine::none, Affine::apic, Affine::tpic}) {
+        if (affine == Affine::apic && !shape->takes_moments()) continue;
         Fixture<Dim> fixture(*shape, place);
         check(fixture, affine);
       }

@@ -106,7 +106,7 @@ class ManufacturedPhysics final : public PhysicsModule<Dim> {
   }
 
   void gather(Scene<Dim>& scene, double dt) {
-    const MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position);
+    const MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position, scene.domain);
     std::vector<MotionReport> reports(scene.blocks.particle_blocks().size());
     for_each_block(scene, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
       scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
@@ -138,17 +138,18 @@ class ManufacturedPhysics final : public PhysicsModule<Dim> {
   /// F <- (I + dt grad v) F
   void deform(Scene<Dim>& scene, std::uint32_t p, const StrainIncrements<Dim>& increment, std::uint32_t at) {
     Columns& columns = scene.particles.columns;
-    Matrix step = Matrix::Identity(), f;
-    for (int a = 0; a < Dim; ++a) step(a, a) += increment.strain[a][at];
+    Matrix step = Matrix::Zero(), f;
+    for (int a = 0; a < Dim; ++a) step(a, a) = increment.strain[a][at];
     for (int k = 0; k < spin_components<Dim>; ++k) {
       const int a = pairs[k][0], b = pairs[k][1];
       const double spin = (Dim == 2 ? -1 : 1) * increment.rotation[k][at];  // w_ab
-      step(a, b) += increment.strain[3 + k][at] + spin;
-      step(b, a) += increment.strain[3 + k][at] - spin;
+      step(a, b) = increment.strain[3 + k][at] + spin;
+      step(b, a) = increment.strain[3 + k][at] - spin;
     }
     for (int c = 0; c < Dim * Dim; ++c) f(c / Dim, c % Dim) = columns.data(deformation_, c)[p];
     const double old_j = f.determinant();
-    f = (step * f).eval();
+    // Of second order, and a rotation keeps the volume.
+    f = ((Matrix::Identity() - step / 2).inverse() * (Matrix::Identity() + step / 2) * f).eval();
     for (int c = 0; c < Dim * Dim; ++c) columns.data(deformation_, c)[p] = f(c / Dim, c % Dim);
     columns.data(scene.particles.volume)[p] *= f.determinant() / old_j;
     set_stress(scene, p, f);

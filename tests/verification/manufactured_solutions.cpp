@@ -8,11 +8,13 @@
 namespace sluice {
 namespace {
 
-constexpr double vortex_amplitude = 0.2;
+constexpr double vortex_amplitude = 0.2, full_amplitude = 1;
 
-const bool registered = register_manufactured<2, exact::AxisAligned<2>>("axis_aligned") &&
-                        register_manufactured<3, exact::AxisAligned<3>>("axis_aligned") &&
-                        register_manufactured<2, exact::Vortex>("vortex", exact::Vortex{.amplitude = vortex_amplitude});
+const bool registered =
+    register_manufactured<2, exact::AxisAligned<2>>("axis_aligned") &&
+    register_manufactured<3, exact::AxisAligned<3>>("axis_aligned") &&
+    register_manufactured<2, exact::Vortex>("vortex", exact::Vortex{.amplitude = vortex_amplitude}) &&
+    register_manufactured<2, exact::Vortex>("full_vortex", exact::Vortex{.amplitude = full_amplitude});
 
 /// Largest |u - exact| over the particles.
 template <int Dim, class Solution>
@@ -72,10 +74,10 @@ double axis_aligned_error(const Scheme& scheme, int n, int per_axis) {
       0.02);
 }
 
-/// The turn of the vortex and back, 1 s. The annulus lies in a block of the same material, which it leaves at rest, so
-/// that its rims are no free surfaces.
-double vortex_error(const Scheme& scheme, int n, int per_axis) {
-  const exact::Vortex solution{.amplitude = vortex_amplitude};
+/// The vortex up to `end`; it turns and is back after 1 s. The annulus lies in a block of the same material, which it
+/// leaves at rest, so that its rims are no free surfaces.
+double vortex_error(const Scheme& scheme, int n, int per_axis, double amplitude = vortex_amplitude, double end = 1) {
+  const exact::Vortex solution{.amplitude = amplitude};
   return largest_error<2>(
       solution,
       {.grid = fmt::format("{{min: [-1.5 m, -1.5 m], max: [1.5 m, 1.5 m], cell: {} m}}", 1.0 / n),
@@ -85,8 +87,8 @@ double vortex_error(const Scheme& scheme, int n, int per_axis) {
                              per_axis * per_axis),
        .boundaries = "{left: fixed, right: fixed, bottom: fixed, top: fixed}",
        .scheme = scheme.with(fmt::format("time_step: {} s", 0.1 / n / 1.16)),
-       .physics = "vortex"},
-      1);
+       .physics = amplitude == full_amplitude ? "full_vortex" : "vortex"},
+      end);
 }
 
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
@@ -108,13 +110,22 @@ TEST_P(QuadraticConvergence, StandingWaves) {
   EXPECT_LT(fine, 1e-3);  // of an amplitude of 0.05
 }
 
-// The same in space, on grids that a test can afford. They are coarse: XPIC has not come to its final order there.
-TEST_P(QuadraticConvergence, StandingWavesInThreeDimensions) {
-  const double coarse = axis_aligned_error<3>(GetParam(), 8, 4), fine = axis_aligned_error<3>(GetParam(), 16, 4);
-  EXPECT_GT(order(coarse, fine), GetParam().transfer == "xpic" ? 1.6 : 1.8) << coarse << ' ' << fine;
+/// The same in space, on grids that a test can afford. They are coarse, and the order still rises: to the h^2 of the
+/// cells comes an h^3 of opposite sign from the walls, where the lumped map of B-splines is right to one order less.
+/// FLIP with cubic functions: a h^2 + b h^3 through 8 and 12 cells gives 4.198e-3 for 16, found: 4.187e-3; its orders
+/// are 1.71 and 1.82. XPIC has 1.45 (cubic) and 1.58 first, and above 1.8 then, as all have. In the plane finer grids
+/// give 1.9.
+void expect_order_that_rises(const Scheme& scheme) {
+  const double coarse = axis_aligned_error<3>(scheme, 8, 4), middle = axis_aligned_error<3>(scheme, 12, 4),
+               fine = axis_aligned_error<3>(scheme, 16, 4);
+  const double first = std::log(coarse / middle) / std::log(1.5), second = std::log(middle / fine) / std::log(4.0 / 3);
+  EXPECT_GT(second, 1.8) << coarse << ' ' << middle << ' ' << fine;
+  EXPECT_GT(second, first) << coarse << ' ' << middle << ' ' << fine;
 }
 
-// Rings of the vortex shear by up to 1.2. A transfer that kept less of a rotation would turn the rings too little.
+TEST_P(QuadraticConvergence, StandingWavesInThreeDimensions) { expect_order_that_rises(GetParam()); }
+
+// Rings of the vortex shear by up to 1.4. A transfer that kept less of a rotation would turn the rings too little.
 TEST_P(QuadraticConvergence, Vortex) {
   const double coarse = vortex_error(GetParam(), 16, 4), fine = vortex_error(GetParam(), 32, 4);
   EXPECT_GT(order(coarse, fine), 1.9) << coarse << ' ' << fine;
@@ -131,6 +142,8 @@ TEST_P(CubicConvergence, StandingWaves) {
   EXPECT_GT(order(coarse, fine), 1.9) << coarse << ' ' << fine;
 }
 
+TEST_P(CubicConvergence, StandingWavesInThreeDimensions) { expect_order_that_rises(GetParam()); }
+
 TEST_P(CubicConvergence, Vortex) {
   const double coarse = vortex_error(GetParam(), 16, 4), fine = vortex_error(GetParam(), 32, 4);
   EXPECT_GT(order(coarse, fine), 1.9) << coarse << ' ' << fine;
@@ -138,6 +151,17 @@ TEST_P(CubicConvergence, Vortex) {
 
 INSTANTIATE_TEST_SUITE_P(Transfers, CubicConvergence, ::testing::ValuesIn(transfers("cubic_bspline")),
                          [](const auto& value) { return value.param.transfer; });
+
+// The vortex as published, five times as far: rings shear by up to R |alpha'| = 7. That draws the rows of particles, h
+// / k apart with k in the width of a cell, up to 7 h / k apart where they lie across the shear. With k = 4 these
+// are 1.75 cells: nodes in between lose their particles, and the error no longer goes down with the cells (order 0.5).
+// k = 6 is enough for the second order. The solution is followed up to the largest shear.
+TEST(Convergence, FullVortexNeedsParticlesAsDenseAsItsShear) {
+  const Scheme tpic = {"quadratic_bspline", "tpic", "usl", 1, {}};
+  const auto error = [&](int n, int per_axis) { return vortex_error(tpic, n, per_axis, full_amplitude, 0.5); };
+  EXPECT_GT(order(error(16, 6), error(32, 6)), 1.9);
+  EXPECT_LT(order(error(16, 4), error(32, 4)), 1);
+}
 
 // The floor: with 2 x 2 particles in a cell the sums over particles, whose error does not know the cells, end the
 // convergence of cubic B-splines (order 0.15, measured), and more particles bring it back.

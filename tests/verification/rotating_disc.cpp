@@ -10,7 +10,7 @@
 namespace sluice {
 namespace {
 
-constexpr double pi = std::numbers::pi, radius = 0.5, spin = 1, density = 1000, poisson = 0.3, h = 0.1;
+constexpr double pi = std::numbers::pi, radius = 0.5, spin = 1, density = 1000, poisson = 0.3;
 
 /// Stresses of the rotating disc: sigma_r = A (R^2 - r^2), sigma_theta = A R^2 - B r^2.
 constexpr double A = (3 - 2 * poisson) / (8 * (1 - poisson)) * density * spin * spin;
@@ -24,9 +24,9 @@ std::string circle() {
   return "[" + points + "]";
 }
 
-std::unique_ptr<Simulation> disc(const Scheme& scheme) {
+std::unique_ptr<Simulation> disc(const Scheme& scheme, double h = 0.1) {
   auto simulation =
-      simulate({.grid = "{min: [-1 m, -1 m], max: [1 m, 1 m], cell: 0.1 m}",
+      simulate({.grid = fmt::format("{{min: [-1 m, -1 m], max: [1 m, 1 m], cell: {} m}}", h),
                 .material = "{model: linear_elastic, density: 1000 kg/m3, youngs_modulus: 0.2 MPa, poisson_ratio: 0.3}",
                 .bodies = fmt::format("  - {{material: soil, polygon: {}}}", circle()),
                 .scheme = scheme});
@@ -52,7 +52,7 @@ std::unique_ptr<Simulation> disc(const Scheme& scheme) {
 
 /// sum m (x v_y - y v_x), and what the affine field holds: sum m D (C_yx - C_xy), with D = h^2 / 4 for quadratic and
 /// h^2 / 3 for cubic B-splines.
-double angular_momentum(const Particles& particles, const Scheme& scheme) {
+double angular_momentum(const Particles& particles, const Scheme& scheme, double h = 0.1) {
   const auto m = by_id(particles, "mass");
   const auto x = by_id(particles, "position", 0), y = by_id(particles, "position", 1);
   const auto vx = by_id(particles, "velocity", 0), vy = by_id(particles, "velocity", 1);
@@ -88,9 +88,8 @@ std::vector<Scheme> affine_schemes() {
 
 class RotatingDisc : public ::testing::TestWithParam<Scheme> {};
 
-// Gates: 1e-6 of the angular momentum with APIC (measured: 1e-12, round-off). With TPIC 1e-4 (measured: 4e-5): the
-// gradient is the moment of (20) where the velocity is linear, and a disc in rotation departs from that by its
-// vibrations and at its ragged rim only. And a tenth of rho Omega^2 R^2 for the deviatoric
+// Gates: 1e-6 of the angular momentum with APIC (measured: 1e-12, round-off), 5e-5 with TPIC (measured: 4e-5; see the
+// next test). And a tenth of rho Omega^2 R^2 for the deviatoric
 // stress over three turns (measured: 0.08; the rim is ragged at this cell size, and no stress is seen to grow from turn
 // to turn). Strain is taken at the beginning of the step (USL) or at its end (USF), not in its middle: a turning disc
 // grows or shrinks by Omega^2 dt / 2 of its radius a second without being strained, and its energy changes twice as
@@ -103,13 +102,37 @@ TEST_P(RotatingDisc, KeepsItsMomentumAndItsStress) {
     simulation->advance_to(turns * 2 * pi / spin);
     const double dt = simulation->time() / static_cast<double>(simulation->steps());
     EXPECT_NEAR(angular_momentum(simulation->particles(), GetParam()) / momentum, 1,
-                GetParam().transfer == "apic" ? 1e-6 : 1e-4);
+                GetParam().transfer == "apic" ? 1e-6 : 5e-5);
     EXPECT_LT(deviatoric_error(simulation->particles()), 0.1);
     EXPECT_NEAR(energy(*simulation, "kinetic") / kinetic, 1, 1.1 * spin * spin * dt * simulation->time() + 1e-3);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, RotatingDisc, ::testing::ValuesIn(affine_schemes()), scheme_name);
+
+// TPIC does not keep angular momentum, but loses it with the second order of the cells only. Along an axis the weights
+// of its gradient and of APIC's moment differ by 2 t (1/4 - t^2) (1, -2, 1) / h for quadratic functions, t from the
+// middle of the cell: by the curvature of the velocity, which a rigid rotation has not, times a function that is as
+// often negative as positive. What is left comes of vibrations and of the ragged rim. Over a turn the largest change is
+// 1.4e-5 with cells of 0.1 R, and quarters at least with each halving; the 1e-6 that APIC is held to, it reaches there.
+TEST(RotatingDiscWithTpic, LosesMomentumWithTheSecondOrderOfTheCells) {
+  const auto largest_change = [](const std::string& shape, double h) {
+    const Scheme scheme = {shape, "tpic", "usl", 1, {}};
+    const auto simulation = disc(scheme, h);
+    const double momentum = angular_momentum(simulation->particles(), scheme, h);
+    double largest = 0;
+    for (const int half_turns : {1, 2}) {
+      simulation->advance_to(half_turns * pi / spin);
+      largest = std::max(largest, std::abs(angular_momentum(simulation->particles(), scheme, h) / momentum - 1));
+    }
+    return largest;
+  };
+  for (const char* shape : {"quadratic_bspline", "cubic_bspline"}) {
+    const double coarse = largest_change(shape, 0.1), fine = largest_change(shape, 0.025);
+    EXPECT_LT(fine, coarse / 16) << shape;
+    EXPECT_LT(fine, 1e-6) << shape;
+  }
+}
 
 // The negative controls: PIC hands no rotation on within a cell, and loses most of it in one turn. So does FLIP with 5
 // % of PIC, of which some thousand steps make a turn.

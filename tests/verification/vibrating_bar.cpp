@@ -4,13 +4,12 @@
 /// rho).
 #include <numbers>
 
-#include "core/transfer/shape_kernels.h"
-#include "tests/verification/scene_fixture.h"
+#include "tests/verification/linear_bar.h"
 
 namespace sluice {
 namespace {
 
-constexpr double pi = std::numbers::pi, v0 = 0.1, length = 25, wave_speed = 10;
+constexpr double pi = std::numbers::pi, length = 25, wave_speed = 10, v0 = 0.1, small = 1e-3;
 
 struct Vibration {
   double phase = 0;      ///< error of the time of the 20th zero of the velocity, over a period
@@ -19,9 +18,45 @@ struct Vibration {
   int steps = 0;         ///< that the first nine periods took
 };
 
+double wave_number(int n) { return (2 * n - 1) * pi / (2 * length); }
+double period(int n) { return 2 * pi / (wave_number(n) * wave_speed); }
+
+/// Takes down ten and a half periods of a vibration, step by step.
+class Recorder {
+ public:
+  Recorder(double period, double start, double initial_energy)
+      : period_(period), start_(start), initial_energy_(initial_energy), before_(start) {}
+  bool done() const { return time_ > 10.5 * period_ - 1e-9; }
+  /// At the end of a step: the amplitude in its middle, the energy at its end.
+  void add(double dt, double amplitude, double energy) {
+    time_ += dt;
+    const double middle = time_ - dt / 2;
+    if ((amplitude < 0) != (before_ < 0) && ++zeros_ == 20)
+      found_.phase = (middle_before_ + (middle - middle_before_) * before_ / (before_ - amplitude)) / period_ - 9.75;
+    if (time_ <= 9 * period_) ++found_.steps;
+    if (time_ > 9 * period_ && time_ < 10 * period_) {
+      found_.amplitude = std::max(found_.amplitude, std::abs(amplitude) / start_);
+      energies_ += energy;
+      ++samples_;
+    }
+    before_ = amplitude;
+    middle_before_ = middle;
+  }
+  Vibration found() {
+    EXPECT_GE(zeros_, 20);
+    found_.energy = energies_ / samples_ / initial_energy_;
+    return found_;
+  }
+
+ private:
+  double period_, start_, initial_energy_, before_, time_ = 0, middle_before_ = 0, energies_ = 0;
+  int zeros_ = 0, samples_ = 0;
+  Vibration found_;
+};
+
 /// Ten periods of mode n on cells of size h.
-Vibration vibrate(const Scheme& scheme, int n, double h) {
-  const double beta = (2 * n - 1) * pi / (2 * length), period = 2 * pi / (beta * wave_speed);
+Vibration vibrate(const Scheme& scheme, int n, double h, double start = v0) {
+  const double beta = wave_number(n);
   const auto simulation =
       simulate({.grid = fmt::format("{{min: [0 m, 0 m], max: [27 m, {0} m], cell: {0} m}}", h),
                 .material = "{model: linear_elastic, density: 1 kg/m3, youngs_modulus: 100 Pa, poisson_ratio: 0}",
@@ -30,41 +65,37 @@ Vibration vibrate(const Scheme& scheme, int n, double h) {
                 .scheme = scheme});
   Particles& particles = simulation->particles();
   const auto shape = [&](const auto& x) { return std::sin(beta * x[0]); };
-  set_column(particles, "velocity", 0, [&](const auto& x) { return v0 * shape(x); });
+  set_column(particles, "velocity", 0, [&](const auto& x) { return start * shape(x); });
   if (scheme.affine())
-    set_column(particles, "affine_velocity", 0, [&](const auto& x) { return v0 * beta * std::cos(beta * x[0]); });
+    set_column(particles, "affine_velocity", 0, [&](const auto& x) { return start * beta * std::cos(beta * x[0]); });
   auto mode = by_id(particles, "velocity");
   const auto mass = by_id(particles, "mass");
-  for (double& m : mode) m /= v0;
+  for (double& m : mode) m /= start;
   double modal_mass = 0;
   for (std::size_t p = 0; p < mode.size(); ++p) modal_mass += mass[p] * mode[p] * mode[p];
 
-  const double initial_energy = energy(*simulation, "kinetic");
-  Vibration result;
-  double before = v0, time_before = 0, energies = 0;
-  int zeros = 0, samples = 0;
-  while (simulation->time() < 10.5 * period) {
-    const double dt = simulation->advance(10.5 * period).dt, time = simulation->time() - dt / 2;
+  Recorder recorder(period(n), start, energy(*simulation, "kinetic"));
+  while (!recorder.done()) {
+    const double dt = simulation->advance(10.5 * period(n)).dt;
     const auto v = by_id(particles, "velocity");
     double now = 0;
     for (std::size_t p = 0; p < mode.size(); ++p) now += mass[p] * v[p] * mode[p] / modal_mass;
-    if ((now < 0) != (before < 0) && ++zeros == 20)
-      result.phase = (time_before + (time - time_before) * before / (before - now)) / period - 9.75;
-    if (simulation->time() <= 9 * period) ++result.steps;
-    if (simulation->time() > 9 * period && simulation->time() < 10 * period) {
-      result.amplitude = std::max(result.amplitude, std::abs(now) / v0);
-      energies += energy(*simulation, "kinetic") + energy(*simulation, "elastic");
-      ++samples;
-    }
-    before = now;
-    time_before = time;
+    recorder.add(dt, now, energy(*simulation, "kinetic") + energy(*simulation, "elastic"));
   }
-  EXPECT_GE(zeros, 20);
-  result.energy = energies / samples / initial_energy;
-  return result;
+  return recorder.found();
 }
 
-double wave_number(int n) { return (2 * n - 1) * pi / (2 * length); }
+/// The same by linear theory, in steps of the same length.
+Vibration predict(const Scheme& scheme, int n, double h, int steps_of_nine_periods) {
+  const double dt = 9 * period(n) / steps_of_nine_periods;
+  LinearBar bar(scheme, 2, length, wave_speed * wave_speed, h, dt);
+  Recorder recorder(period(n), v0, bar.start(v0, wave_number(n)));
+  while (!recorder.done()) {
+    bar.advance();
+    recorder.add(dt, bar.amplitude(), bar.energy());
+  }
+  return recorder.found();
+}
 
 /// Lumped masses slow waves of wave number k down by a share of (k h)^2: FLIP with functions of degree p by
 /// (p + 1) / 12 of it, 1/4 for quadratic and 1/3 for cubic B-splines, for particles without number. So many periods are
@@ -103,39 +134,47 @@ double kept_by_xpic(const std::string& shape, double kh, int m, int steps) {
 
 class VibratingBar : public ::testing::TestWithParam<Scheme> {};
 
-// 160 points a wave. Energy: the field's gate for a good scheme is 1 % in ten periods; FLIP with USL, which damps,
-// loses 0.2 %. Cubic functions with APIC or TPIC lose up to 2 %, and XPIC(2) what it must and with wide functions 3 %
-// of the amplitude more: at the ends, where the mode is steepest, its mappings flatten what an affine field would keep.
-TEST_P(VibratingBar, FirstMode) {
-  const Scheme& scheme = GetParam();
-  const Vibration v = vibrate(scheme, 1, 1);
-  EXPECT_LT(std::abs(v.phase), largest_phase_error(scheme, 1, 1));
-  const double kept = scheme.transfer == "xpic" ? kept_by_xpic(scheme.shape, wave_number(1), 2, v.steps) : 1;
-  const bool bspline = scheme.shape.ends_with("bspline");
-  const double wide = scheme.transfer == "xpic" && bspline ? 18 : scheme.shape == "cubic_bspline" ? 5 : 1;
-  EXPECT_NEAR(v.amplitude, kept, 2e-3 * wide);
-  EXPECT_NEAR(v.energy, kept * kept, 4e-3 * wide);
+/// Every scheme does what linear theory says of it, and waves are no slower than the lumping makes them.
+void expect_as_predicted(const Scheme& scheme, int n, double h, double phase, double share) {
+  const Vibration found = vibrate(scheme, n, h), predicted = predict(scheme, n, h, found.steps);
+  EXPECT_NEAR(found.phase, predicted.phase, phase);
+  EXPECT_NEAR(found.amplitude, predicted.amplitude, share);
+  EXPECT_NEAR(found.energy, predicted.energy, 2 * share);
+  EXPECT_LT(std::abs(found.phase), largest_phase_error(scheme, n, h));
+  EXPECT_LT(found.energy, 1.02);  // velocities and stresses are half a step apart
 }
 
-// 42 points a wave. Schemes that are known to damp, FLIP with USL (Bardenhagen 2002), APIC and TPIC with wide shape
-// functions, lose up to a fifth of the energy; the others keep it to 2 %. XPIC has a test of its own.
-TEST_P(VibratingBar, TenthMode) {
+// 160 points a wave. Tolerances: linear theory knows neither that particles move, by a sixth of a cell, nor strains of
+// 1
+// %. Measured: phase 2e-3 with uGIMP and 7e-4 else, amplitude and energy 5e-4; with a hundredth of the velocity, a
+// tenth of that. What theory says where schemes lose more than the field's 1 % of energy in ten periods: cubic
+// functions with APIC and TPIC 1 to 2 %, and with FLIP and USL 0.9 %, which is what they make of the free end; XPIC(2)
+// with B-splines 3 to 7 %, which is what they make of the wall. There the functions of repeated knots are lopsided: of
+// a field beta x the second node takes the mean sum N x / sum N = 3/4 beta h (quadratic), where 1/2 beta h is right,
+// and each step the mapping keeps what it can of a kink. The bar doubled to both sides of the wall, without it, loses
+// 0.2 %; linear functions and uGIMP, which are symmetric about the nodes next to a wall, lose 0.2 %, too. A particle
+// that carries an affine field is right for any node. The loss is of second order in h.
+TEST_P(VibratingBar, FirstModeAsLinearTheorySays) { expect_as_predicted(GetParam(), 1, 1, 2e-3, 5e-4); }
+
+// 42 points a wave, which dampers feel: theory gives FLIP with USL (Bardenhagen 2002) 83 % of the energy after ten
+// periods with quadratic functions, APIC 94 %, TPIC 92 %, XPIC(2) 67 to 79 %. Measured: phase 7e-3 with uGIMP and 2e-3
+// else, amplitude 6e-3.
+TEST_P(VibratingBar, TenthModeAsLinearTheorySays) { expect_as_predicted(GetParam(), 10, 0.25, 7e-3, 6e-3); }
+
+// What a good scheme is to keep in ten periods of the first mode: all but 1 % of the energy (2 % with cubic functions
+// and an affine field, see above; XPIC damps by design). The negative control is PIC, below.
+TEST_P(VibratingBar, KeepsItsEnergy) {
   const Scheme& scheme = GetParam();
-  const Vibration v = vibrate(scheme, 10, 0.25);
-  EXPECT_LT(std::abs(v.phase), largest_phase_error(scheme, 10, 0.25));
-  EXPECT_LT(v.energy, 1.02);
-  if (scheme.transfer == "xpic") return;
-  const bool damps = scheme.affine() ? !scheme.linear() : scheme.stress_update == "usl";
-  const double wide = scheme.shape == "cubic_bspline" ? 1.3 : 1;
-  EXPECT_NEAR(v.amplitude, 1, damps ? 0.1 * wide : 0.01);
-  EXPECT_GT(v.energy, damps ? 1 - 0.2 * wide : 0.98);
+  if (scheme.transfer == "xpic") GTEST_SKIP();
+  EXPECT_NEAR(vibrate(scheme, 1, 1).energy, 1, scheme.shape == "cubic_bspline" && scheme.affine() ? 0.02 : 0.01);
 }
 
-// Second order in h: half the cell, a quarter of the phase error, to a tenth; to a fifth with uGIMP, whose particles
-// are as long as half a cell and see its edges.
+// Second order in h: half the cell, a quarter of the phase error, to a tenth. With a hundredth of the velocity, because
+// the particles of uGIMP begin with their ends on edges of cells: displaced by u, they are slower by a share k^2 h |u|,
+// of first order in h.
 TEST_P(VibratingBar, PhaseErrorIsOfSecondOrder) {
-  const double coarse = vibrate(GetParam(), 10, 0.25).phase, fine = vibrate(GetParam(), 10, 0.125).phase;
-  EXPECT_NEAR(coarse / fine, 4, GetParam().shape == "ugimp" ? 0.8 : 0.4);
+  const double coarse = vibrate(GetParam(), 10, 0.25, small).phase, fine = vibrate(GetParam(), 10, 0.125, small).phase;
+  EXPECT_NEAR(coarse / fine, 4, 0.4);
 }
 
 // The damping of PIC and XPIC(m) on the tenth mode, against what theory predicts with no free number: to a tenth of its
