@@ -167,7 +167,7 @@ void StressTrial<Dim>::strain(double dt) {
   });
 }
 
-/// Keeps the inverse of the deformation, and makes the increments those of the middle of the step (35c).
+/// Keeps the inverse of the deformation, and makes the increments those of the middle of the step (29c).
 template <int Dim>
 void StressTrial<Dim>::deform(const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& own) {
   const Tensor<Dim> one = Tensor<Dim>::Identity();

@@ -1,5 +1,5 @@
 /// StressTrial: the stresses that displacements of the nodes make, from a state of the particles that is kept, with the
-/// update that steps use; and the forces of these stresses on the nodes. docs/theory.md, eqs. (32e), (35c) and (35d).
+/// update that steps use; and the forces of these stresses on the nodes. docs/theory.md, eqs. (29a), (29c) and (32e).
 #pragma once
 
 #include <array>

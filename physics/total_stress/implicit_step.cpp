@@ -16,6 +16,14 @@ namespace {
 
 std::span<double> span_of(Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
 
+/// What a face has that implicit steps do not know; null if nothing.
+const char* unknown_in(const FaceCase& face) {
+  if (face.absorbing) return "absorbing face";
+  if (face.normal == FaceCase::Normal::contact) return "contact";
+  if (face.normal != FaceCase::Normal::free && face.tangential == FaceCase::Tangential::friction) return "friction";
+  return face.velocity.empty() ? nullptr : "moving face";
+}
+
 /// What implicit steps cannot do, or need.
 void check(const Case& definition) {
   const Node* const scheme = definition.source.find("scheme");
@@ -29,10 +37,14 @@ void check(const Case& definition) {
                              "computed; for example `time_step: 0.1 s`",
                              word));
   for (const auto& [name, face] : definition.faces)
-    if (face.normal == FaceCase::Normal::fixed && face.tangential == FaceCase::Tangential::friction)
-      problems.add(place, fmt::format("scheme.integration: {} knows no friction on faces, and `{}` has some; take "
-                                      "roller or fixed",
-                                      word, name));
+    if (const char* const what = unknown_in(face))
+      problems.add(place,
+                   fmt::format("scheme.integration: {} knows no {}, and `boundaries.{}` has it; take free, roller "
+                               "or fixed",
+                               word, what, name));
+  if (!definition.obstacles.empty())
+    problems.add(definition.obstacles.front().place,
+                 fmt::format("obstacles: `integration: {}` knows none; take `integration: explicit`", word));
   if (word == "implicit_newmark" && definition.scheme.transfer == "xpic")
     problems.add(place,
                  "scheme.integration: implicit_newmark does not go with `transfer: xpic`; take flip, apic or tpic");
@@ -89,11 +101,10 @@ struct ImplicitStep<Dim>::Forces {
     const Eigen::Map<const Eigen::VectorXd> now(u.data(), static_cast<Eigen::Index>(u.size()));
     Eigen::Map<Eigen::VectorXd> out(f.data(), static_cast<Eigen::Index>(f.size()));
     if (!trial.apply(u, dt, f)) return false;
-    out += elastic.spring().cwiseProduct(now);
-    if (inertia > 0)
+    if (inertia > 0)  // which holds what nothing else holds
       out += inside_at_start - 2 * outside + inertia * elastic.mass().cwiseProduct(now - dt * velocity);
     else
-      out -= outside;
+      out += elastic.spring().cwiseProduct(now) - outside;
     return true;
   }
 };
@@ -167,7 +178,7 @@ void ImplicitStep<Dim>::solve(Scene<Dim>& scene, Forces& forces, Eigen::VectorXd
 /// The nodes have the velocity u / dt.
 template <int Dim>
 void ImplicitStep<Dim>::move_statically(Scene<Dim>& scene, double dt) {
-  MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position);
+  MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position, scene.domain);
   update.shares = {0, 0, 1};  // without inertia nothing is left of the velocity before
   gather(scene, update);
 }
@@ -177,12 +188,12 @@ void ImplicitStep<Dim>::move_with_inertia(Scene<Dim>& scene, Forces& forces, con
   const double dt = forces.dt;
   Eigen::VectorXd after = 2 / dt * u - forces.velocity, change = after - forces.velocity;
   forces.trial.set_motion(span_of(after), 1, span_of(change));
-  gather(scene, motion_update(scene, 0, scene.particles.position));  // velocities alone
+  gather(scene, motion_update(scene, 0, scene.particles.position, {}));  // velocities alone
   const double fastest = scene.motion.largest_speed_squared;
 
   Eigen::VectorXd mean = u;
   forces.trial.set_motion(span_of(mean), 1 / dt);
-  MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position);
+  MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position, scene.domain);
   for (int a = 0; a < Dim; ++a) update.velocity[a] = scene.particles.columns.data(spare_velocity_, a);
   update.affine = {};
   update.shares = {0, 0, 1};

@@ -31,6 +31,12 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
       outside_(loads_, water_.ponds, -water_.density * definition.gravity.back(), grid_of<Dim>(definition.grid)),
       pressure_(water_, grid_of<Dim>(definition.grid), definition.gravity.back()) {
   check_changes(definition);
+  if (definition.scheme.integration != "explicit")
+    throw CaseError(
+        definition.source.find("scheme")->find("integration")->place,
+        fmt::format("scheme.integration: {} is for `physics: total_stress`; two_phase takes explicit steps of "
+                    "the soil, with the pressure of the water implicit",
+                    definition.scheme.integration));
   for (const auto& [name, face] : definition.faces)
     if (face.absorbing)
       throw CaseError(definition.source.find("boundaries")->find(name)->place,

@@ -29,9 +29,10 @@ struct ThickCylinder {
     const double size = strength * plastic * plastic / (outer * outer), ratio = outer * outer / (r * r);
     return {size * (1 - ratio), size * (1 + ratio)};
   }
-  /// Of the outer face, outwards [m].
-  double outer_displacement(double plastic, double youngs_modulus, double poisson_ratio) const {
-    return 2 * (1 - poisson_ratio * poisson_ratio) * strength * plastic * plastic / (outer * youngs_modulus);
+  /// In the elastic part, outwards [m].
+  double displacement(double r, double plastic, double youngs_modulus, double poisson_ratio) const {
+    const double size = (1 + poisson_ratio) * strength * plastic * plastic / (youngs_modulus * outer * outer);
+    return size * ((1 - 2 * poisson_ratio) * r + outer * outer / r);
   }
 };
 
