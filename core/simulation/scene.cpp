@@ -19,6 +19,18 @@ GridGeometry<Dim> grid_of(const GridCase& grid) {
 template GridGeometry<2> grid_of<2>(const GridCase&);
 template GridGeometry<3> grid_of<3>(const GridCase&);
 
+namespace {
+
+/// Where the case says `transfer`, or else `shape`.
+Place place_of_scheme(const Case& definition) {
+  const Node* const section = definition.source.find("scheme");
+  if (section == nullptr) return definition.source.place;
+  const Node *const transfer = section->find("transfer"), *const shape = section->find("shape");
+  return transfer != nullptr ? transfer->place : shape != nullptr ? shape->place : section->place;
+}
+
+}  // namespace
+
 template <int Dim>
 Scene<Dim>::Scene(const Case& definition)
     : grid(grid_of<Dim>(definition.grid)),
@@ -32,9 +44,9 @@ Scene<Dim>::Scene(const Case& definition)
     affine = particles.columns.declare({"affine_velocity", "1/s", Dim * Dim, Role::state,
                                         "Affine velocity field, row by row: component, direction.", false});
   if (transfer.affine && !transfer.gradient && !shape->takes_moments())
-    throw CaseError(definition.source.place, "scheme: transfer '" + scheme.transfer +
-                                                 "' needs moments of the shape functions, which shape '" +
-                                                 scheme.shape + "' does not have; take tpic, xpic or flip");
+    throw CaseError(place_of_scheme(definition), "scheme: transfer '" + scheme.transfer +
+                                                     "' needs moments of the shape functions, which shape '" +
+                                                     scheme.shape + "' does not have; take tpic, xpic or flip");
   if (const ColumnSpec spec = shape->domain(); spec.components > 0) domain = particles.columns.declare(spec);
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <numbers>
 
+#include "core/grid/geometry.h"
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {
@@ -73,11 +74,11 @@ double frequency(const Scheme& scheme, int dimension, double h, int per_axis) {
   const auto mode = by_id(particles, "velocity", up);
   double before = 1, time_before = 0;
   for (int zeros = 0;;) {
-    const double dt = simulation->advance(1e6).dt, time = simulation->time() - dt / 2;
+    const double dt = simulation->advance(1e6).dt, middle_time = simulation->time() - dt / 2;
     const double now = dot(by_id(particles, "velocity", up), mode);
     if ((now < 0) != (before < 0) && ++zeros == 3)
-      return 1.25 * 2 * std::numbers::pi / (time_before + (time - time_before) * before / (before - now));
-    before = now, time_before = time;
+      return 1.25 * 2 * std::numbers::pi / (time_before + (middle_time - time_before) * before / (before - now));
+    before = now, time_before = middle_time;
   }
 }
 
@@ -89,13 +90,23 @@ TEST(Timoshenko, IsSlenderBeamsLimit) {
 
 class Cantilever : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(Cantilever, Print) {
+// Two cells, then four in the depth. Gates: 1.5 % of the frequency with four (measured: 0.2 % to 0.4 % above with
+// functions on linear nodes, 0.9 % to 1.4 % below with B-splines, whose surface is a particle's width softer), and
+// second order: a third of the error at least.
+TEST_P(Cantilever, VibratesWithTheFrequencyOfTimoshenko) {
   const double exact = timoshenko_frequency();
-  for (const char* transfer : {"flip", "tpic"})
-    for (const double h : {0.5, 0.25, 0.125})
-      printf("%s %s h=%g k=2 %.5f k=3 %.5f\n", GetParam().c_str(), transfer, h,
-             frequency({GetParam(), transfer, "usl", 1, {}}, 2, h, 2) / exact - 1,
-             h < 0.2 ? 0 : frequency({GetParam(), transfer, "usl", 1, {}}, 2, h, 3) / exact - 1);
+  for (const char* transfer : {"flip", "tpic"}) {
+    const Scheme scheme = {GetParam(), transfer, "usl", 1, {}};
+    const double coarse = frequency(scheme, 2, 0.5, 2) / exact - 1, fine = frequency(scheme, 2, 0.25, 2) / exact - 1;
+    EXPECT_LT(std::abs(fine), 0.015) << transfer;
+    EXPECT_GT(coarse / fine, 3) << transfer;
+  }
+}
+
+// In space, between two smooth faces, the plane is found again.
+TEST_P(Cantilever, InSpaceAsInThePlane) {
+  const Scheme scheme = {GetParam(), "tpic", "usl", 1, {}};
+  EXPECT_NEAR(frequency(scheme, 3, 0.5, 2) / frequency(scheme, 2, 0.5, 2), 1, 1e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Cantilever,

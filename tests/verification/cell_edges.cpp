@@ -75,8 +75,8 @@ TEST_P(CellEdges, AHairFromTheEdge) {
     }
 }
 
-// On the boundary of the domain itself, 1e-18 outside of it, and leaving it. Outside by round-off is no outflow. CPDI sums
-// over corners, whose round-off is some times larger.
+// On the boundary of the domain itself, 1e-18 outside of it, and leaving it. Outside by round-off is no outflow. CPDI
+// sums over corners, whose round-off is some times larger.
 TEST_P(CellEdges, OnTheBoundaryOfTheDomain) {
   for (const int dimension : {2, 3})
     for (const double corner : {0.0, -1e-18}) {
