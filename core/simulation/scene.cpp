@@ -29,6 +29,14 @@ std::array<std::vector<double>, Dim> node_places(const ShapeKernels<Dim>& shape,
   return places;
 }
 
+/// Where the case says `transfer`, or else `shape`.
+Place place_of_scheme(const Case& definition) {
+  const Node* const section = definition.source.find("scheme");
+  if (section == nullptr) return definition.source.place;
+  const Node *const transfer = section->find("transfer"), *const shape = section->find("shape");
+  return transfer != nullptr ? transfer->place : shape != nullptr ? shape->place : section->place;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -49,9 +57,9 @@ Scene<Dim>::Scene(const Case& definition)
     unit_pressure = particles.columns.declare(
         {"unit_pressure", "1", 2, Role::derived, "Ones and zeros: a stress of one, and none.", false});
   if (transfer.affine && !transfer.gradient && !shape->takes_moments())
-    throw CaseError(definition.source.place, "scheme: transfer '" + scheme.transfer +
-                                                 "' needs moments of the shape functions, which shape '" +
-                                                 scheme.shape + "' does not have; take tpic, xpic or flip");
+    throw CaseError(place_of_scheme(definition), "scheme: transfer '" + scheme.transfer +
+                                                     "' needs moments of the shape functions, which shape '" +
+                                                     scheme.shape + "' does not have; take tpic, xpic or flip");
   if (const ColumnSpec spec = shape->domain(); spec.components > 0) domain = particles.columns.declare(spec);
 }
 

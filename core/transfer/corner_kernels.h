@@ -5,7 +5,7 @@
 /// own; the loops of kernels.h are the same. Included only by the files that define such a shape.
 #pragma once
 
-#include "core/transfer/kernels.h"
+#include "core/transfer/shape_kernels_of.h"
 
 namespace sluice {
 namespace kernel {
@@ -154,6 +154,13 @@ SLUICE_ALWAYS_INLINE void add_to_nodes(const CornerWeights<Dim, Shape>& w, int p
   }
 }
 
+template <class Shape, bool Affine>
+SLUICE_ALWAYS_INLINE void add_both_to_nodes(const CornerWeights<2, Shape>& w, int p, Lane base, const Lane* slope,
+                                            Lane body, const Lane* flux, Lane* tile, Lane* force_tile) {
+  add_to_nodes<2, Shape, Affine, false>(w, p, base, slope, flux, tile);
+  add_to_nodes<2, Shape, false, true>(w, p, body, slope, flux, force_tile);
+}
+
 /// The velocity (and its change) at corner c of particle p.
 template <int Dim, class Shape>
 SLUICE_ALWAYS_INLINE void at_corner(const CornerWeights<Dim, Shape>& w, int c, int p, const Lane* motion_tile,
@@ -233,6 +240,7 @@ Stencil<Dim> corner_stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x,
         node[axis] = static_cast<int>(cell) + up + Shape::outside;
         value *= up ? t : 1 - t;
       }
+      if (std::abs(value) < 1e-15) continue;  // a corner on an edge of cells has but some of their nodes
       const auto place =
           static_cast<std::size_t>(std::find(s.node.begin(), s.node.begin() + s.count, node) - s.node.begin());
       if (place == static_cast<std::size_t>(s.count)) {

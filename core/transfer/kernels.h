@@ -1,53 +1,17 @@
-/// The transfer kernels, written once for every shape function and dimension.
+/// The transfer kernels: scatter and gather, written once for every shape function and dimension.
 ///
 /// Particles are taken in chunks. Within a chunk, what is the same for all particles (weights, updates) is done in
-/// loops over particles that the compiler vectorizes; the sums over nodes are done particle by particle, with one
-/// vector operation a node and field lane. Included only by the files that define a shape function.
+/// loops over particles that the compiler vectorizes; the sums over nodes are done particle by particle. Weights and
+/// sums are those of products over the axes (axis_weights.h, axis_sums.h) or of corners (corner_kernels.h).
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <type_traits>
 
-#include "core/parallel/multitarget.h"
-#include "core/transfer/shape_kernels.h"
+#include "core/transfer/axis_sums.h"
 
 namespace sluice {
-
-inline constexpr int chunk_size = 64;
-
 namespace kernel {
-
-/// Where a point is on an axis, in cells, for the shape functions: from the lower edge of the cell in which its lower
-/// end is. A point without a size is its own lower end.
-struct AxisPlace {
-  double low;    ///< of its lower end, in [0, 1)
-  double half;   ///< half of its size; 0 for shape functions that take particles as points
-  double below;  ///< cells between this cell and the lower wall
-  double above;  ///< and the upper wall
-};
-
-/// APIC's weights N_i (x_i - x) / sum_j N_j (x_j - x)^2, in 1/cells, from values and distances. Good to round-off where
-/// the values are: near a wall numerator and sum go to zero together.
-template <int Nodes>
-SLUICE_ALWAYS_INLINE void moment_weights(const double* value, const double* distance, double* weight) {
-  double sum = 0;
-  for (int i = 0; i < Nodes; ++i) sum += value[i] * distance[i] * distance[i];
-  const double inverse = 1 / sum;
-  for (int i = 0; i < Nodes; ++i) weight[i] = value[i] * distance[i] * inverse;
-}
-
-/// Shape functions of a chunk of particles, by axis and node, and where in the tile each particle's first node is.
-template <int Dim, class Shape>
-struct ChunkWeights {
-  static constexpr int nodes = Shape::nodes;
-  alignas(64) double value[Dim][nodes][chunk_size];
-  alignas(64) double slope[Dim][nodes][chunk_size];     ///< [1/m]
-  alignas(64) double distance[Dim][nodes][chunk_size];  ///< x_i - x [m]
-  alignas(64) double affine[Dim][nodes][chunk_size];    ///< [1/m]
-  alignas(64) std::int32_t base[chunk_size];
-};
 
 /// What the loops weigh with: ChunkWeights, or CornerWeights (corner_kernels.h).
 template <int Dim, class Shape>
@@ -58,82 +22,6 @@ struct WeightsOf {
 /// Of shapes by corners: corner_kernels.h.
 template <int Dim, class Shape>
 Stencil<Dim> corner_stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x, std::span<const double> domain);
-
-template <int Dim, class Shape>
-inline constexpr int tile_row = tile_width<Dim>(Shape::reach);
-
-/// Distance in the tile between nodes that are neighbours along an axis.
-template <int Dim, class Shape>
-constexpr int tile_stride(int axis) {
-  return power(tile_row<Dim, Shape>, axis);
-}
-
-/// The same for a particle of half size `half` [cells] at `s` cells from the lower wall. Close to a wall it shrinks so
-/// as to end there: values then sum to one and reproduce linear fields up to the wall.
-template <class Shape>
-SLUICE_ALWAYS_INLINE AxisPlace place_of_sized(double s, double half, double last_cell, double* cell) {
-  const double end = last_cell + 1, raised = s > Shape::hair ? s : Shape::hair;
-  const double centre = raised < end - Shape::hair ? raised : end - Shape::hair;
-  const double below = centre < half ? centre : half, size = end - centre < below ? end - centre : below;
-  const double lowest = centre - size, floor = std::floor(lowest);
-  *cell = floor < last_cell ? floor : last_cell;
-  return {lowest - *cell, size, *cell, last_cell - *cell};
-}
-
-/// The shape functions of one axis. Written over plain pointers and without calls, or the compiler will not vectorize
-/// it.
-template <class Shape, bool Distances, bool AffineWeights, int Nodes = Shape::nodes>
-SLUICE_ALWAYS_INLINE void weigh_axis(const double* __restrict x, const double* __restrict half, int count, double low,
-                                     double h, double last_cell, double (*__restrict values)[chunk_size],
-                                     double (*__restrict slopes)[chunk_size],
-                                     double (*__restrict distances)[chunk_size],
-                                     double (*__restrict affines)[chunk_size], double* __restrict cells) {
-  const double inverse = 1 / h;
-#pragma GCC ivdep
-  for (int p = 0; p < count; ++p) {
-    const double s = (x[p] - low) * inverse;
-    double cell;
-    AxisPlace at;
-    if constexpr (Shape::sized) {
-      at = place_of_sized<Shape>(s, half[p], last_cell, &cell);
-    } else {
-      const double floor = std::floor(s), positive = floor > 0 ? floor : 0;
-      // A point on the upper face of the grid counts to the last cell.
-      cell = positive < last_cell ? positive : last_cell;
-      const double in_cell = s - cell;
-      const double raised = in_cell > Shape::hair ? in_cell : Shape::hair;
-      at = {raised < 1 - Shape::hair ? raised : 1 - Shape::hair, 0, cell, last_cell - cell};
-    }
-    double value[Nodes], slope[Nodes], distance[Nodes], weight[Nodes];
-    Shape::evaluate(at, value, slope, distance);
-    if constexpr (AffineWeights) Shape::affine(at, value, distance, weight);
-    for (int i = 0; i < Nodes; ++i) {
-      values[i][p] = value[i];
-      slopes[i][p] = slope[i] * inverse;
-      if constexpr (Distances) distances[i][p] = distance[i] * h;
-      if constexpr (AffineWeights) affines[i][p] = weight[i] * inverse;
-    }
-    cells[p] = cell;
-  }
-}
-
-template <int Dim, class Shape, bool Distances, bool AffineWeights>
-SLUICE_ALWAYS_INLINE void weigh(const BlockParticles<Dim>& block, std::uint32_t begin, int count,
-                                ChunkWeights<Dim, Shape>& w) {
-  alignas(64) double cells[Dim][chunk_size];
-  for (int a = 0; a < Dim; ++a)
-    weigh_axis<Shape, Distances, AffineWeights>(
-        block.position[a] + begin, Shape::sized ? block.domain[0] + begin : nullptr, count, block.grid->min[a],
-        block.grid->cell[a], block.grid->cells[a] - 1, w.value[a], w.slope[a], w.distance[a], w.affine[a], cells[a]);
-  int origin = 0;
-  for (int a = 0; a < Dim; ++a)
-    origin += (block.first_cell[a] - tile_margin - Shape::outside) * tile_stride<Dim, Shape>(a);
-  for (int p = 0; p < count; ++p) {
-    int base = -origin;
-    for (int a = 0; a < Dim; ++a) base += static_cast<std::int32_t>(cells[a][p]) * tile_stride<Dim, Shape>(a);
-    w.base[p] = base;
-  }
-}
 
 /// sigma in the notation of `symmetric_components`, as the columns that grad N is multiplied with.
 template <int Dim>
@@ -158,85 +46,6 @@ SLUICE_ALWAYS_INLINE Lane mass_and_momentum(double mass, const std::array<const 
     return Lane{mass, mass * velocity[0][p], mass * velocity[1][p], 0};
   else
     return Lane{mass, mass * velocity[0][p], mass * velocity[1][p], mass * velocity[2][p]};
-}
-
-/// Adds  N (base + sum_b (x_i - x)_b slope_b) + sum_b dN/dx_b flux_b  to every node of one particle.
-/// `Affine` and `Flux` say which of the terms are there.
-template <int Dim, class Shape, bool Affine, bool Flux>
-SLUICE_ALWAYS_INLINE void add_to_nodes(const ChunkWeights<Dim, Shape>& w, int p, Lane base, const Lane* slope,
-                                       const Lane* flux, Lane* tile) {
-  constexpr int nodes = Shape::nodes;
-  Lane* const origin = tile + w.base[p];
-  for (int k = 0; k < (Dim == 3 ? nodes : 1); ++k) {
-    Lane plane = base, plane_slope_x{}, plane_slope_y{}, plane_flux{}, plane_flux_x{}, plane_flux_y{};
-    if constexpr (Affine) plane_slope_x = slope[0], plane_slope_y = slope[1];
-    if constexpr (Flux) plane_flux_x = flux[0], plane_flux_y = flux[1];
-    if constexpr (Dim == 3) {
-      const double n = w.value[2][k][p];
-      if constexpr (Affine) {
-        plane = n * (plane + w.distance[2][k][p] * slope[2]);
-        plane_slope_x *= n;
-        plane_slope_y *= n;
-      } else {
-        plane *= n;
-      }
-      if constexpr (Flux) {
-        plane_flux = w.slope[2][k][p] * flux[2];
-        plane_flux_x *= n;
-        plane_flux_y *= n;
-      }
-    }
-    for (int j = 0; j < nodes; ++j) {
-      const double n = w.value[1][j][p];
-      Lane row = plane, row_slope{}, row_flux{};
-      if constexpr (Affine) {
-        row += w.distance[1][j][p] * plane_slope_y;
-        row_slope = n * plane_slope_x;
-      }
-      row *= n;
-      if constexpr (Flux) {
-        row += w.slope[1][j][p] * plane_flux_y;
-        if constexpr (Dim == 3) row += n * plane_flux;
-        row_flux = n * plane_flux_x;
-      }
-      Lane* const node = origin + j * tile_stride<Dim, Shape>(1) + k * tile_stride<Dim, Shape>(2);
-      for (int i = 0; i < nodes; ++i) {
-        Lane sum = row;
-        if constexpr (Affine) sum += w.distance[0][i][p] * row_slope;
-        sum *= w.value[0][i][p];
-        if constexpr (Flux) sum += w.slope[0][i][p] * row_flux;
-        node[i] += sum;
-      }
-    }
-  }
-}
-
-/// The same for momentum (to `tile`) and force (to `force_tile`) at once, in two dimensions: weights are read once.
-template <class Shape, bool Affine>
-SLUICE_ALWAYS_INLINE void add_both_to_nodes(const ChunkWeights<2, Shape>& w, int p, Lane base, const Lane* slope,
-                                            Lane body, const Lane* flux, Lane* tile, Lane* force_tile) {
-  constexpr int nodes = Shape::nodes;
-  Lane* const origin = tile + w.base[p];
-  Lane* const force_origin = force_tile + w.base[p];
-  for (int j = 0; j < nodes; ++j) {
-    const double n = w.value[1][j][p];
-    Lane row = base, row_slope{};
-    if constexpr (Affine) {
-      row += w.distance[1][j][p] * slope[1];
-      row_slope = n * slope[0];
-    }
-    row *= n;
-    const Lane force_row = n * body + w.slope[1][j][p] * flux[1], row_flux = n * flux[0];
-    Lane* const node = origin + j * tile_stride<2, Shape>(1);
-    Lane* const force_node = force_origin + j * tile_stride<2, Shape>(1);
-    for (int i = 0; i < nodes; ++i) {
-      const double value = w.value[0][i][p];
-      Lane sum = row;
-      if constexpr (Affine) sum += w.distance[0][i][p] * row_slope;
-      node[i] += value * sum;
-      force_node[i] += value * force_row + w.slope[0][i][p] * row_flux;
-    }
-  }
 }
 
 template <int Dim>
@@ -288,55 +97,6 @@ SLUICE_MULTITARGET void scatter(const ScatterInput<Dim>& in, double impulse_dt, 
       }
     }
   }
-}
-
-/// Sums over the nodes of one particle, and their derivatives along the axes.
-template <int Dim>
-struct Gathered {
-  Lane value[motion_lanes<Dim>];
-  Lane gradient[Dim];  ///< of the velocity lane
-  Lane affine[Dim];    ///< the same with APIC's weights
-};
-
-template <int Dim, class Shape, bool Value, bool Gradient, bool Affine>
-SLUICE_ALWAYS_INLINE Gathered<Dim> sum_nodes(const ChunkWeights<Dim, Shape>& w, int p, const Lane* motion_tile) {
-  constexpr int nodes = Shape::nodes, lanes = motion_lanes<Dim>;
-  const Lane* const origin = motion_tile + w.base[p] * lanes;
-  Gathered<Dim> sum{};
-  for (int k = 0; k < (Dim == 3 ? nodes : 1); ++k) {
-    Gathered<Dim> plane{};
-    for (int j = 0; j < nodes; ++j) {
-      Lane row[lanes] = {}, row_slope{}, row_affine{};
-      const Lane* const node = origin + (j * tile_stride<Dim, Shape>(1) + k * tile_stride<Dim, Shape>(2)) * lanes;
-      for (int i = 0; i < nodes; ++i) {
-        for (int l = 0; l < (Value ? lanes : 1); ++l) row[l] += w.value[0][i][p] * node[i * lanes + l];
-        if constexpr (Gradient) row_slope += w.slope[0][i][p] * node[i * lanes];
-        if constexpr (Affine) row_affine += w.affine[0][i][p] * node[i * lanes];
-      }
-      for (int l = 0; l < (Value ? lanes : 1); ++l) plane.value[l] += w.value[1][j][p] * row[l];
-      if constexpr (Gradient) {
-        plane.gradient[0] += w.value[1][j][p] * row_slope;
-        plane.gradient[1] += w.slope[1][j][p] * row[0];
-      }
-      if constexpr (Affine) {
-        plane.affine[0] += w.value[1][j][p] * row_affine;
-        plane.affine[1] += w.affine[1][j][p] * row[0];
-      }
-    }
-    if constexpr (Dim == 2) {
-      sum = plane;
-    } else {
-      const double n = w.value[2][k][p];
-      for (int l = 0; l < (Value ? lanes : 1); ++l) sum.value[l] += n * plane.value[l];
-      for (int a = 0; a < 2; ++a) {
-        if constexpr (Gradient) sum.gradient[a] += n * plane.gradient[a];
-        if constexpr (Affine) sum.affine[a] += n * plane.affine[a];
-      }
-      if constexpr (Gradient) sum.gradient[2] += w.slope[2][k][p] * plane.value[0];
-      if constexpr (Affine) sum.affine[2] += w.affine[2][k][p] * plane.value[0];
-    }
-  }
-  return sum;
 }
 
 /// What the particles of a chunk gathered: four doubles a particle and lane, to be read across particles.
@@ -550,48 +310,6 @@ SLUICE_MULTITARGET void gather_field(const BlockParticles<Dim>& block, const Lan
   }
 }
 
-/// Weights of one node along one axis, for a lane of the motion: `slope` for component `axis`, `value` for the others.
-SLUICE_ALWAYS_INLINE Lane divergence_weights(double value, double slope, int axis) {
-  Lane w{value, value, value, value};
-  w[axis] = slope;
-  return w;
-}
-
-/// {dvx/dx, dvy/dy, dvx, dvy} of one particle in 2-D, {dvx/dx, dvy/dy, dvz/dz, 0} and {dvx, dvy, dvz, 0} in 3-D: one
-/// product a node and lane, because each component has slopes along its own axis only.
-template <int Dim, class Shape>
-SLUICE_ALWAYS_INLINE void sum_divergence(const ChunkWeights<Dim, Shape>& w, int p, const Lane* motion_tile, Lane* out) {
-  constexpr int nodes = Shape::nodes, lanes = motion_lanes<Dim>;
-  const Lane* const origin = motion_tile + w.base[p] * lanes;
-  Lane along_x[nodes], along_y[nodes], along_z[Dim == 3 ? nodes : 1];
-  for (int i = 0; i < nodes; ++i) {
-    along_x[i] = divergence_weights(w.value[0][i][p], w.slope[0][i][p], 0);
-    along_y[i] = divergence_weights(w.value[1][i][p], w.slope[1][i][p], 1);
-    if constexpr (Dim == 3) along_z[i] = divergence_weights(w.value[2][i][p], w.slope[2][i][p], 2);
-  }
-  Lane sum[lanes] = {};
-  for (int k = 0; k < (Dim == 3 ? nodes : 1); ++k) {
-    Lane plane[lanes] = {};
-    for (int j = 0; j < nodes; ++j) {
-      Lane row[lanes] = {};
-      const Lane* const node = origin + (j * tile_stride<Dim, Shape>(1) + k * tile_stride<Dim, Shape>(2)) * lanes;
-      for (int i = 0; i < nodes; ++i) {
-        row[0] += along_x[i] * node[i * lanes];
-        if constexpr (Dim == 3) row[1] += w.value[0][i][p] * node[i * lanes + 1];
-      }
-      plane[0] += along_y[j] * row[0];
-      if constexpr (Dim == 3) plane[1] += w.value[1][j][p] * row[1];
-    }
-    if constexpr (Dim == 3) {
-      sum[0] += along_z[k] * plane[0];
-      sum[1] += w.value[2][k][p] * plane[1];
-    } else {
-      sum[0] = plane[0];
-    }
-  }
-  for (int l = 0; l < lanes; ++l) out[l] = sum[l];
-}
-
 template <int Dim, class Shape>
 SLUICE_MULTITARGET void gather_divergence(const BlockParticles<Dim>& block, const Lane* motion_tile, double* divergence,
                                           const std::array<double*, Dim>& change) {
@@ -618,145 +336,4 @@ SLUICE_MULTITARGET void gather_divergence(const BlockParticles<Dim>& block, cons
 }
 
 }  // namespace kernel
-
-/// What shape functions have in common that take particles as points. A shape is a struct of static members for one
-/// axis; several axes are products:
-///   nodes, reach, outside  nodes that a particle takes; ShapeKernels::reach and outside
-///   smooth, hair, negligible_weight  see ShapeKernels and linear.cpp
-///   evaluate(place, value, slope, distance)  N, dN/dx [1/cells], and the distances x_i - x of the nodes [cells]
-///   affine(place, value, distance, weight)   APIC's weights [1/cells]; moment_weights does, if nothing is shorter
-///   node_offset(i, n)  place of node i on an axis of n cells, in cells from the lower wall
-struct PointShape {
-  static constexpr bool by_corners = false;          ///< see corner_kernels.h
-  static constexpr bool sized = false;               ///< particles have a size, the first number of their domain
-  static constexpr bool moments_are_slopes = false;  ///< APIC's affine field is the gradient
-  static ColumnSpec domain(int) { return {"domain", "1", 0, Role::state, ""}; }
-};
-
-/// The kernels of one shape function; see ShapeKernels.
-template <int Dim, class Shape>
-class ShapeKernelsOf final : public ShapeKernels<Dim> {
- public:
-  int reach() const override { return Shape::reach; }
-  int outside() const override { return Shape::outside; }
-  bool smooth() const override { return Shape::smooth; }
-  double negligible_weight() const override { return Shape::negligible_weight; }
-
-  double node_position(const GridGeometry<Dim>& grid, int axis, int i) const override {
-    const auto a = static_cast<std::size_t>(axis);
-    return grid.min[a] + grid.cell[a] * Shape::node_offset(i, grid.cells[a]);
-  }
-
-  ColumnSpec domain() const override { return Shape::domain(Dim); }
-  bool takes_moments() const override { return !Shape::by_corners; }
-  void fill_domain(const GridGeometry<Dim>& grid, double share, std::span<double> numbers) const override {
-    if constexpr (Shape::sized) numbers[0] = 0.5 * share;
-    if constexpr (Shape::by_corners) Shape::template fill<Dim>(grid, share, numbers.data());
-  }
-
-  Stencil<Dim> stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x,
-                       std::span<const double> domain) const override {
-    if constexpr (Shape::by_corners)
-      return kernel::corner_stencil<Dim, Shape>(grid, x, domain);
-    else
-      return axis_stencil(grid, x, domain);
-  }
-
-  static Stencil<Dim> axis_stencil(const GridGeometry<Dim>& grid, const Vector<Dim>& x,
-                                   std::span<const double> domain) {
-    constexpr int nodes = Shape::nodes;
-    double value[Dim][nodes], slope[Dim][nodes], distance[nodes];
-    Index<Dim> cell = grid.cell_of(x);
-    for (int a = 0; a < Dim; ++a) {
-      const double s = (x[a] - grid.min[a]) / grid.cell[a], last_cell = grid.cells[a] - 1;
-      kernel::AxisPlace at{s - cell[a], 0, static_cast<double>(cell[a]), last_cell - cell[a]};
-      if constexpr (Shape::sized) {
-        double first;
-        at = kernel::place_of_sized<Shape>(s, domain[0], last_cell, &first);
-        cell[a] = static_cast<int>(first);
-      }
-      Shape::evaluate(at, value[a], slope[a], distance);
-    }
-    Stencil<Dim> s;
-    for (int n = 0; n < power(nodes, Dim); ++n) {
-      const auto place = static_cast<std::size_t>(s.count++);
-      Index<Dim> i;
-      for (int a = 0, rest = n; a < Dim; ++a, rest /= nodes) i[a] = rest % nodes;
-      s.value[place] = 1;
-      for (int a = 0; a < Dim; ++a) {
-        s.node[place][a] = cell[a] + Shape::outside + i[a];
-        s.value[place] *= value[a][i[a]];
-        s.gradient[place][a] = slope[a][i[a]] / grid.cell[a];
-        for (int b = 0; b < Dim; ++b)
-          if (b != a) s.gradient[place][a] *= value[b][i[b]];
-      }
-      if (Shape::sized && s.value[place] == 0) --s.count;  // beyond the end of the particle
-    }
-    return s;
-  }
-
-  void scatter(ScatterWhat what, const ScatterInput<Dim>& in, double dt, Lane* tile, Lane* force_tile) const override {
-    const bool affine = in.affine[0] != nullptr;
-    using enum ScatterWhat;
-    if (what == momentum)
-      affine ? kernel::scatter<Dim, Shape, momentum, true>(in, dt, tile, force_tile)
-             : kernel::scatter<Dim, Shape, momentum, false>(in, dt, tile, force_tile);
-    else if (what == force)
-      in.body_force[0] != nullptr ? kernel::scatter<Dim, Shape, force, false, true>(in, dt, tile, force_tile)
-                                  : kernel::scatter<Dim, Shape, force, false>(in, dt, tile, force_tile);
-    else if (what == momentum_and_force)
-      affine ? kernel::scatter<Dim, Shape, momentum_and_force, true>(in, dt, tile, force_tile)
-             : kernel::scatter<Dim, Shape, momentum_and_force, false>(in, dt, tile, force_tile);
-    else
-      affine ? kernel::scatter<Dim, Shape, momentum_and_impulse, true>(in, dt, tile, force_tile)
-             : kernel::scatter<Dim, Shape, momentum_and_impulse, false>(in, dt, tile, force_tile);
-  }
-
-  double gather_strain(const BlockParticles<Dim>& particles, const Lane* motion_tile, double dt,
-                       const StrainIncrements<Dim>& out) const override {
-    return kernel::gather_strain<Dim, Shape>(particles, motion_tile, dt, out);
-  }
-
-  void gather_field(const BlockParticles<Dim>& particles, const Lane* tile,
-                    const FieldGather<Dim>& out) const override {
-    kernel::gather_field<Dim, Shape>(particles, tile, out);
-  }
-
-  void gather_divergence(const BlockParticles<Dim>& particles, const Lane* motion_tile, double* divergence,
-                         const std::array<double*, Dim>& change) const override {
-    kernel::gather_divergence<Dim, Shape>(particles, motion_tile, divergence, change);
-  }
-
-  void map_again(const BlockParticles<Dim>& particles, const double* mass, const Lane* motion_tile,
-                 Lane* tile) const override {
-    kernel::map_again<Dim, Shape>(particles, mass, motion_tile, tile);
-  }
-
-  MotionReport gather_motion(const BlockParticles<Dim>& particles, const Lane* motion_tile,
-                             const MotionUpdate<Dim>& update) const override {
-    using enum kernel::AffineField;
-    if (update.affine[0] == nullptr) return gather_motion_with<none>(particles, motion_tile, update);
-    if (update.affine_is_gradient || Shape::moments_are_slopes)
-      return gather_motion_with<gradient>(particles, motion_tile, update);
-    if constexpr (!Shape::moments_are_slopes) return gather_motion_with<moment>(particles, motion_tile, update);
-  }
-
- private:
-  template <kernel::AffineField Field>
-  static MotionReport gather_motion_with(const BlockParticles<Dim>& particles, const Lane* motion_tile,
-                                         const MotionUpdate<Dim>& update) {
-    return update.strain != nullptr ? kernel::gather_motion<Dim, Shape, Field, true>(particles, motion_tile, update)
-                                    : kernel::gather_motion<Dim, Shape, Field, false>(particles, motion_tile, update);
-  }
-};
-
-/// Registers `Shape` under `name`, for 2-D and 3-D. `Shape` must have external linkage: the linker chooses among the
-/// clones of its kernels.
-#define SLUICE_REGISTER_SHAPE(tag, Shape, name, summary)                                   \
-  const bool tag##_registered = shape_registry<2>().add(name, {summary, {}}, [] {          \
-    return std::unique_ptr<ShapeKernels<2>>(std::make_unique<ShapeKernelsOf<2, Shape>>()); \
-  }) && shape_registry<3>().add(name, {summary, {}}, [] {                                  \
-    return std::unique_ptr<ShapeKernels<3>>(std::make_unique<ShapeKernelsOf<3, Shape>>()); \
-  });
-
 }  // namespace sluice

@@ -1,4 +1,4 @@
-#include "core/transfer/kernels.h"
+#include "core/transfer/shape_kernels_of.h"
 
 namespace sluice {
 namespace shape {

@@ -75,7 +75,8 @@ TEST_P(CellEdges, AHairFromTheEdge) {
     }
 }
 
-// On the boundary of the domain itself, 1e-18 outside of it, and leaving it. Outside by round-off is no outflow.
+// On the boundary of the domain itself, 1e-18 outside of it, and leaving it. Outside by round-off is no outflow. CPDI
+// sums over corners, whose round-off is some times larger.
 TEST_P(CellEdges, OnTheBoundaryOfTheDomain) {
   for (const int dimension : {2, 3})
     for (const double corner : {0.0, -1e-18}) {
@@ -84,7 +85,7 @@ TEST_P(CellEdges, OnTheBoundaryOfTheDomain) {
       take_steps(*simulation, 10);
       SCOPED_TRACE(fmt::format("{}-D, corner at {}", dimension, corner));
       expect_undisturbed(*simulation, mass, 1, GetParam());
-      EXPECT_NEAR(by_id(simulation->particles(), "position")[0], 0.5, 1e-14);
+      EXPECT_NEAR(by_id(simulation->particles(), "position")[0], 0.5, GetParam().by_corners() ? 1e-13 : 1e-14);
     }
 }
 

@@ -165,5 +165,25 @@ TEST(ActiveBlocks, ATinyBodyInAHugeGridRuns) {
   EXPECT_LT(simulation->memory(), 1000000u);
 }
 
+// CPDI has no moments for APIC, which is the default.
+TEST(Schemes, ApicIsRefusedWithShapesByCorners) {
+  for (const char* shape : {"cpdi", "cpdi2"}) {
+    try {
+      simulate({.grid = "{min: [0 m, 0 m], max: [4 m, 4 m], cell: 1 m}",
+                .bodies = "  - {material: soil, box: {min: [0 m, 0 m], max: [1 m, 1 m]}}",
+                .scheme = {shape, "apic", "usl", 1, {}}});
+      ADD_FAILURE() << shape;
+    } catch (const CaseError& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find(fmt::format("scheme: transfer 'apic' needs moments of the shape functions, which shape "
+                                         "'{}' does not have; take tpic, xpic or flip",
+                                         shape)),
+                std::string::npos)
+          << message;
+      EXPECT_EQ(message.find("scene.yaml:"), 0u) << message;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sluice

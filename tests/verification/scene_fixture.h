@@ -28,6 +28,7 @@ struct Scheme {
 
   bool linear() const { return shape == "linear"; }
   bool by_corners() const { return shape.starts_with("cpdi"); }
+  bool sized() const { return by_corners() || shape == "ugimp"; }
   bool affine() const { return transfer == "apic" || transfer == "tpic"; }
   std::string text() const {
     return fmt::format("{{shape: {}, transfer: {}, stress_update: {}, flip_fraction: {}{}{}}}", shape, transfer,
