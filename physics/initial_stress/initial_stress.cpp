@@ -77,6 +77,42 @@ auto with_file(const Write& write) {
 const std::vector<std::pair<std::string, By>> ways{
     {"auto", By::automatic}, {"particles", By::particles}, {"cells", By::cells}};
 
+/// The same with `equilibrium`.
+template <class Write>
+auto with_equilibrium(const Write& write) {
+  return [=](const InitialStress& initial) { return initial.method == Method::equilibrium ? write(initial) : Node{}; };
+}
+
+void add_equilibrium_keys(Schema<InitialStress>& schema) {
+  const InitialStress defaults;
+  schema
+      .custom(
+          {.name = "increments",
+           .type = field_type::integer,
+           .range = from_to(1, 1000).text(unit::none),
+           .default_text = std::to_string(defaults.increments),
+           .sentence = "For `equilibrium`: parts in which weight and loads are applied, one after the other."},
+          [](InitialStress& initial, const Node& node, Problems& problems) {
+            initial.increments = static_cast<int>(
+                value::integer(node, "increments", from_to(1, 1000), problems).value_or(initial.increments));
+          },
+          with_equilibrium([](const InitialStress& initial) { return Node::text(std::to_string(initial.increments)); }))
+      .custom(
+          {.name = "tolerance",
+           .type = field_type::quantity,
+           .unit = unit::none.si,
+           .range = above_to(0, 0.1).text(unit::none),
+           .default_text = fmt::format("{:g}", defaults.tolerance),
+           .sentence = "For `equilibrium`: the largest force out of balance on a node, as a share of the largest force "
+                       "of weight and loads on a node."},
+          [](InitialStress& initial, const Node& node, Problems& problems) {
+            initial.tolerance =
+                value::quantity(node, "tolerance", unit::none, above_to(0, 0.1), problems).value_or(initial.tolerance);
+          },
+          with_equilibrium(
+              [](const InitialStress& initial) { return value::from_quantity(initial.tolerance, unit::none); }));
+}
+
 void add_file_keys(Schema<InitialStress>& schema) {
   schema
       .custom(
@@ -141,12 +177,6 @@ Schema<InitialStress> make_schema() {
           Method::none)
       .quantities("stress", &InitialStress::stress, unit::stress, any_number, {{4, 6}},
                   "For `uniform`: xx yy zz xy in 2-D, xx yy zz xy yz xz in 3-D, tension positive.", Absent{"none"})
-      .integer("increments", &InitialStress::increments, from_to(1, 1000),
-               "For `equilibrium`: parts in which weight and loads are applied, one after the other.", 1)
-      .quantity("tolerance", &InitialStress::tolerance, unit::none, above_to(0, 0.1),
-                "For `equilibrium`: the largest force out of balance on a node, as a share of the largest force of "
-                "weight and loads on a node.",
-                InitialStress{}.tolerance)
       .custom(
           {.name = "surface",
            .type = field_type::quantity,
@@ -165,6 +195,7 @@ Schema<InitialStress> make_schema() {
                            "material, {clay: 0.6}; where there is none, from the material's `friction_angle`.",
                .alternatives = {{.type = field_type::named_sections}}},
               read_k0, write_k0);
+  add_equilibrium_keys(schema);
   add_file_keys(schema);
   return schema;
 }

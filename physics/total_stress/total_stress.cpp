@@ -176,8 +176,8 @@ void TotalStress<Dim>::step_implicit(Scene<Dim>& scene, double dt) {
   pressed_.end_step();
 }
 
-/// With APIC nobody but dashpots asks for the nodes' change of velocity: momentum and impulse can share a lane. Not with
-/// linear functions, where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::smooth).
+/// With APIC nobody but dashpots asks for the nodes' change of velocity: momentum and impulse can share a lane. Not
+/// with linear functions, where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::smooth).
 template <int Dim>
 void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
   const double kick = scene.kick(dt);
