@@ -8,6 +8,7 @@
 
 #include "core/case/geometry.h"
 #include "core/case/node.h"
+#include "core/case/table.h"
 
 namespace sluice {
 
@@ -28,13 +29,34 @@ struct BodyCase {
   Place place;                        ///< where the body stands in the case file
 };
 
-/// What a face of the grid does to the material that reaches it.
+/// What lies beyond a face that lets waves out.
+struct AbsorbingCase {
+  double density = 0;             ///< [kg/m3]
+  double p_wave = 0, s_wave = 0;  ///< speeds [m/s]
+};
+
+/// What a face of the grid, or the surface of an obstacle, does to the material that reaches it.
 struct FaceCase {
-  enum class Normal { free, fixed };
+  enum class Normal {
+    free,     ///< nothing
+    fixed,    ///< the material has the normal velocity of the face
+    contact,  ///< the same, but it may move away
+  };
   enum class Tangential { free, fixed, friction };
   Normal normal = Normal::free;
   Tangential tangential = Tangential::free;
-  double friction = 0;  ///< Coulomb coefficient, used where tangential is `friction`
+  double friction = 0;                          ///< Coulomb coefficient, used where tangential is `friction`
+  double adhesion = 0;                          ///< shear traction that needs no pressure [Pa], likewise
+  std::vector<Table> velocity = {};             ///< of the face [m/s], Dim components; empty: at rest
+  std::optional<AbsorbingCase> absorbing = {};  ///< then it is free otherwise; faces only
+};
+
+/// A rigid region inside the grid that keeps material out.
+struct ObstacleCase {
+  std::string name;
+  Region region;     ///< where it is at time 0
+  FaceCase surface;  ///< never free; it moves with the velocity
+  Place place;
 };
 
 /// A material that gives way to another during the run, for example sand to liquefied sand.
@@ -51,8 +73,11 @@ struct SchemeCase {
   double flip_fraction = 1;  ///< share of FLIP in the FLIP/PIC blend; 1 is pure FLIP, 0 is pure PIC
   int xpic_order = 2;        ///< of XPIC: mappings to the nodes in a step; 1 is PIC
   std::string stress_update = "usl";
-  std::string strain = "jaumann";         ///< how stress follows large strain: jaumann or hencky
-  bool f_bar = false;                     ///< volumetric strain increments averaged over cells
+  std::string integration = "explicit";  ///< explicit, implicit_static or implicit_newmark
+  double tolerance = 1e-6;               ///< implicit steps: of forces out of balance, over the largest force on a node
+  double gravity_ramp = 0;               ///< implicit_static: time over which gravity grows [s]
+  std::string strain = "jaumann";        ///< how stress follows large strain: jaumann or hencky
+  bool f_bar = false;                    ///< volumetric strain increments averaged over cells
   std::optional<double> fixed_time_step;  ///< [s]; absent: computed every step
   Place time_step_place;                  ///< where `time_step` stands in the case file
   double courant = 0.5;                   ///< wave limit: courant * h / (c + |v|)
@@ -89,9 +114,10 @@ struct Case {
   std::vector<std::pair<std::string, Node>> materials;  ///< in file order; read by the physics module
   std::vector<BodyCase> bodies;
   std::map<std::string, FaceCase> faces;  ///< left right bottom top (front back in 3-D)
-  Node initial_stress;                    ///< read by the physics module
-  Node surface_loads;                     ///< the same
-  Node water;                             ///< the same
+  std::vector<ObstacleCase> obstacles;
+  Node initial_stress;  ///< read by the physics module
+  Node surface_loads;   ///< the same
+  Node water;           ///< the same
   std::vector<ChangeCase> changes;
   SchemeCase scheme;
   OutflowPolicy outflow = OutflowPolicy::error;

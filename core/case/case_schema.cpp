@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace sluice {
 
 namespace {
@@ -66,62 +68,151 @@ Schema<BodyCase> body_schema() {
 // ---- boundaries
 // --------------------------------------------------------------------------------------------------------
 
-/// A face as it is written.
+/// A face, or the surface of an obstacle, as it is written.
 struct FaceKeys {
   FaceCase::Normal normal = FaceCase::Normal::free;
   std::optional<std::string> tangential;
-  std::optional<double> friction;
+  std::optional<double> friction, adhesion;
+  std::vector<Table> velocity;
+  std::optional<AbsorbingCase> absorbing;
 };
 
-Schema<FaceKeys> face_schema() {
+using NormalWords = std::vector<std::pair<std::string, FaceCase::Normal>>;
+
+const NormalWords& normal_words() {
   using Normal = FaceCase::Normal;
-  return Schema<FaceKeys>("face")
-      .choice<Normal>("normal", &FaceKeys::normal, {{"free", Normal::free}, {"fixed", Normal::fixed}},
-                      "Motion through the face.", Normal::free)
+  static const NormalWords words{{"free", Normal::free}, {"fixed", Normal::fixed}, {"contact", Normal::contact}};
+  return words;
+}
+
+std::string word_of(FaceCase::Normal normal) {
+  for (const auto& [word, value] : normal_words())
+    if (value == normal) return word;
+  return {};
+}
+
+/// A list of components, each a quantity or a table.
+std::vector<Table> read_velocity(const Node& node, Problems& problems) {
+  std::vector<Table> velocity;
+  const auto is_list = [](const Node& item) { return item.kind == Node::Kind::list; };
+  if (node.kind != Node::Kind::list || std::ranges::none_of(node.items, is_list)) {
+    const auto constant = value::quantities(node, "velocity", unit::velocity, any_number, dimensions, problems);
+    for (const double component : constant.value_or(std::vector<double>{}))
+      velocity.push_back(Table::constant(component));
+    return velocity;
+  }
+  for (const Node& item : node.items)
+    if (auto component = value::table(item, "velocity", unit::velocity, any_number, problems))
+      velocity.push_back(std::move(*component));
+  return velocity;
+}
+
+Node write_velocity(const std::vector<Table>& velocity) {
+  Node list = Node::list();
+  for (const Table& component : velocity) list.items.push_back(value::from_table(component, unit::velocity));
+  return velocity.empty() ? Node{} : list;
+}
+
+/// Adds the keys of a surface to the schema of something that derives from FaceKeys.
+template <class T>
+Schema<T>& with_surface(Schema<T>& schema, const NormalWords& words, FaceCase::Normal otherwise,
+                        const std::string& sentence) {
+  return schema.template choice<FaceCase::Normal>("normal", &T::normal, words, sentence, otherwise)
       .custom(
           {.name = "tangential",
            .type = field_type::word,
-           .default_text = "free, or friction where a coefficient is given",
+           .default_text = "free, or friction where a coefficient or an adhesion is given",
            .sentence = "Motion along the face.",
            .words = {"free", "fixed", "friction"}},
-          [](FaceKeys& keys, const Node& node, Problems& problems) {
+          [](T& keys, const Node& node, Problems& problems) {
             keys.tangential = value::word(node, "tangential", {"free", "fixed", "friction"}, problems);
           },
-          [](const FaceKeys& keys) { return keys.tangential ? Node::text(*keys.tangential) : Node{}; })
-      .quantity("friction", &FaceKeys::friction, unit::none, at_least(0),
-                "Coulomb coefficient of friction; needs `normal: fixed`.");
+          [](const T& keys) { return keys.tangential ? Node::text(*keys.tangential) : Node{}; })
+      .quantity("friction", &T::friction, unit::none, at_least(0),
+                "Coulomb coefficient of friction; needs `normal: fixed` or `contact`.")
+      .quantity("adhesion", &T::adhesion, unit::stress, at_least(0),
+                "Shear stress that friction may take without pressure; needs `normal: fixed`.")
+      .custom(
+          {.name = "velocity",
+           .type = field_type::quantities,
+           .unit = "m/s",
+           .range = "2 or 3 components",
+           .default_text = "at rest",
+           .sentence = "Velocity of the face, in time: each component a value or points [[time, value], …]. Needs "
+                       "`normal: fixed` or `contact`.",
+           .alternatives = {{.type = field_type::points, .unit = "m/s"}}},
+          [](T& keys, const Node& node, Problems& problems) { keys.velocity = read_velocity(node, problems); },
+          [](const T& keys) { return write_velocity(keys.velocity); });
+}
+
+Schema<AbsorbingCase> absorbing_schema() {
+  return Schema<AbsorbingCase>("absorbing")
+      .quantity("density", &AbsorbingCase::density, unit::density, above(0), "Density beyond the face.")
+      .quantity("p_wave", &AbsorbingCase::p_wave, unit::velocity, above(0), "Speed of compression waves.")
+      .quantity("s_wave", &AbsorbingCase::s_wave, unit::velocity, at_least(0), "Speed of shear waves.");
+}
+
+Schema<FaceKeys> face_schema() {
+  auto schema = Schema<FaceKeys>("face");
+  return with_surface(schema, normal_words(), FaceCase::Normal::free,
+                      "Motion through the face: free, none, or none but away from it.")
+      .section(
+          "absorbing", &FaceKeys::absorbing, absorbing_schema(),
+          "Dashpots that let waves out, as if the material went on beyond the face; goes with no other key. The face "
+          "keeps the traction that it has at the start.",
+          Absent{"none"});
 }
 
 const std::vector<std::string> face_shorthands{"free", "roller", "fixed"};
 
+/// What the keys of a section mean; `name` is what messages call it.
+FaceCase surface_of(const FaceKeys& keys, const Node& node, const std::string& name, Problems& problems) {
+  using Tangential = FaceCase::Tangential;
+  FaceCase face;
+  face.normal = keys.normal;
+  face.friction = keys.friction.value_or(0);
+  face.adhesion = keys.adhesion.value_or(0);
+  face.velocity = keys.velocity;
+  face.absorbing = keys.absorbing;
+  if (const Node* const absorbing = node.find("absorbing")) {
+    if (node.items.size() > 1)
+      problems.add(absorbing->place, fmt::format("{}: absorbing goes with no other key", name));
+    if (keys.absorbing && keys.absorbing->s_wave >= keys.absorbing->p_wave)
+      problems.add(absorbing->place, fmt::format("{}: absorbing: s_wave must be below p_wave", name));
+    return face;
+  }
+  const bool rough = keys.friction || keys.adhesion;
+  if (rough)
+    face.tangential = Tangential::friction;
+  else if (keys.tangential)
+    face.tangential = *keys.tangential == "fixed" ? Tangential::fixed : Tangential::free;
+  for (const char* const key : {"friction", "adhesion", "velocity"}) {
+    const Node* const given = node.find(key);
+    if (given == nullptr) continue;
+    if (rough && std::string("velocity") != key && keys.tangential && *keys.tangential != "friction")
+      problems.add(given->place, fmt::format("{}: {} contradicts `tangential: {}`; leave out one of them", name, key,
+                                             *keys.tangential));
+    const bool adhesion = std::string("adhesion") == key;
+    if (adhesion && keys.normal != FaceCase::Normal::fixed)
+      problems.add(given->place, fmt::format("{}: adhesion needs `normal: fixed`: what adheres does not let go", name));
+    else if (keys.normal == FaceCase::Normal::free)
+      problems.add(given->place, fmt::format("{}: {} needs `normal: fixed` or `normal: contact`", name, key));
+  }
+  if (keys.tangential && *keys.tangential == "friction" && !node.find("friction") && !node.find("adhesion"))
+    problems.add(node.find("tangential")->place,
+                 fmt::format("{}: `tangential: friction` needs a coefficient, for example friction: 0.4", name));
+  return face;
+}
+
 FaceCase read_face(const Node& node, const std::string& name, Problems& problems) {
   using Tangential = FaceCase::Tangential;
   static const Schema<FaceKeys> schema = face_schema();
+  if (node.kind != Node::Kind::scalar)
+    return surface_of(schema.read(node, {}, problems), node, "boundaries." + name, problems);
   FaceCase face;
-  if (node.kind == Node::Kind::scalar) {
-    const auto word = value::word(node, "boundaries." + name, face_shorthands, problems);
-    if (word && *word != "free") face.normal = FaceCase::Normal::fixed;
-    if (word && *word == "fixed") face.tangential = Tangential::fixed;
-    return face;
-  }
-  const FaceKeys keys = schema.read(node, {}, problems);
-  face.normal = keys.normal;
-  if (keys.friction) {
-    const Place place = node.find("friction")->place;
-    face.tangential = Tangential::friction;
-    face.friction = *keys.friction;
-    if (keys.tangential && *keys.tangential != "friction")
-      problems.add(place, fmt::format("boundaries.{}: friction contradicts `tangential: {}`; leave out one of them",
-                                      name, *keys.tangential));
-    if (keys.normal != FaceCase::Normal::fixed)
-      problems.add(place, fmt::format("boundaries.{}: friction needs `normal: fixed`", name));
-  } else if (keys.tangential) {
-    face.tangential = *keys.tangential == "fixed" ? Tangential::fixed : Tangential::free;
-    if (*keys.tangential == "friction" && !node.find("friction"))
-      problems.add(
-          node.find("tangential")->place,
-          fmt::format("boundaries.{}: `tangential: friction` needs a coefficient, for example friction: 0.4", name));
-  }
+  const auto word = value::word(node, "boundaries." + name, face_shorthands, problems);
+  if (word && *word != "free") face.normal = FaceCase::Normal::fixed;
+  if (word && *word == "fixed") face.tangential = Tangential::fixed;
   return face;
 }
 
@@ -138,20 +229,73 @@ void read_faces(Case& definition, const Node& node, Problems& problems) {
   }
 }
 
+/// Adds the keys that give this surface.
+void write_surface(const FaceCase& face, Node& keys) {
+  if (face.absorbing) {
+    keys.set("absorbing", absorbing_schema().write(*face.absorbing));
+    return;
+  }
+  keys.set("normal", Node::text(word_of(face.normal)));
+  if (face.tangential == FaceCase::Tangential::friction) {
+    keys.set("friction", value::from_quantity(face.friction, unit::none));
+    if (face.adhesion > 0) keys.set("adhesion", value::from_quantity(face.adhesion, unit::stress));
+  } else {
+    keys.set("tangential", Node::text(face.tangential == FaceCase::Tangential::fixed ? "fixed" : "free"));
+  }
+  if (!face.velocity.empty()) keys.set("velocity", write_velocity(face.velocity));
+}
+
 Node write_faces(const Case& definition) {
   Node faces = Node::map();
   for (const std::string& name : face_words(definition.dimension())) {
     const auto found = definition.faces.find(name);
-    const FaceCase face = found == definition.faces.end() ? FaceCase{} : found->second;
     Node keys = Node::map();
-    keys.set("normal", Node::text(face.normal == FaceCase::Normal::fixed ? "fixed" : "free"));
-    if (face.tangential == FaceCase::Tangential::friction)
-      keys.set("friction", value::from_quantity(face.friction, unit::none));
-    else
-      keys.set("tangential", Node::text(face.tangential == FaceCase::Tangential::fixed ? "fixed" : "free"));
+    write_surface(found == definition.faces.end() ? FaceCase{} : found->second, keys);
     faces.set(name, keys);
   }
   return faces;
+}
+
+// ---- obstacles ----
+
+struct ObstacleKeys : FaceKeys {
+  Region region;
+};
+
+const Schema<ObstacleKeys>& obstacle_schema() {
+  static const Schema<ObstacleKeys> schema = [] {
+    Schema<ObstacleKeys> declared("obstacle");
+    with_shapes(
+        declared, [](ObstacleKeys& keys) -> Region& { return keys.region; },
+        [](const ObstacleKeys& keys) -> const Region& { return keys.region; });
+    return with_surface(declared, {normal_words().begin() + 1, normal_words().end()}, FaceCase::Normal::contact,
+                        "Whether the material may move away from the surface (`contact`) or not (`fixed`).");
+  }();
+  return schema;
+}
+
+void read_obstacles(Case& definition, const Node& node, Problems& problems) {
+  if (node.kind != Node::Kind::map) {
+    problems.add(node.place,
+                 fmt::format("obstacles: found {}; expected sections by name, NAME: {{…}}", description(node)));
+    return;
+  }
+  for (std::size_t i = 0; i < node.items.size(); ++i) {
+    const std::string& name = node.keys[i].first;
+    const ObstacleKeys keys = obstacle_schema().read(node.items[i], {}, problems);
+    const FaceCase surface = surface_of(keys, node.items[i], "obstacles." + name, problems);
+    definition.obstacles.push_back({name, keys.region, surface, node.items[i].place});
+  }
+}
+
+Node write_obstacles(const Case& definition) {
+  Node all = Node::map();
+  for (const ObstacleCase& obstacle : definition.obstacles) {
+    Node keys = region_schema().write(obstacle.region);
+    write_surface(obstacle.surface, keys);
+    all.set(obstacle.name, keys);
+  }
+  return definition.obstacles.empty() ? Node{} : all;
 }
 
 // ---- changes ----
@@ -194,6 +338,18 @@ Schema<SchemeCase> scheme_schema() {
       .word("stress_update", &S::stress_update, {"usf", "usl", "musl"},
             "When the stress is updated: first in the step, last, or last with velocities mapped a second time.",
             defaults.stress_update)
+      .word("integration", &S::integration, {"explicit", "implicit_static", "implicit_newmark"},
+            "Steps forward in time: explicit; implicit without inertia, from equilibrium to equilibrium; or implicit "
+            "with inertia (Newmark, average acceleration). Implicit steps are for `physics: total_stress` and need "
+            "`time_step`.",
+            defaults.integration)
+      .quantity("tolerance", &S::tolerance, unit::none, above_to(0, 0.1),
+                "For implicit steps: the largest force out of balance on a node, as a share of the largest force on a "
+                "node.",
+                defaults.tolerance)
+      .quantity("gravity_ramp", &S::gravity_ramp, unit::time, at_least(0),
+                "For `implicit_static`: time over which gravity grows from nothing to its full value.",
+                defaults.gravity_ramp)
       .word("strain", &S::strain, {"jaumann", "hencky"},
             "How stress follows large strain: elasticity in rate form, turned with the material; or in logarithmic "
             "strain, "
@@ -320,6 +476,13 @@ Schema<Case> make_case_schema() {
                .nested = face_schema().docs(),
                .alternatives = {{.type = field_type::word, .words = face_shorthands}}},
               read_faces, write_faces)
+      .custom({.name = "obstacles",
+               .type = field_type::named_sections,
+               .default_text = "none",
+               .sentence = "Rigid regions inside the grid that keep material out, by name: each one shape, or the "
+                           "intersection of several. They move with their velocity.",
+               .nested = obstacle_schema().docs()},
+              read_obstacles, write_obstacles)
       .custom(
           {.name = "initial_stress",
            .type = field_type::section,

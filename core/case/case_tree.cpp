@@ -239,6 +239,8 @@ void resolve_files(Node& tree, const std::string& case_file, Problems& problems)
     for (Node& body : bodies->items) files.resolve(&body);
   if (Node* const observe = tree.find("observe"))
     for (Node& observation : observe->items) files.resolve(observation.find("region"));
+  if (Node* const obstacles = tree.find("obstacles"))
+    for (Node& obstacle : obstacles->items) files.resolve(&obstacle);
   if (Node* const loads = tree.find("surface_loads"))
     for (Node& load : loads->items) files.resolve(load.find("region"));
   files.complete(tree.find("initial_stress"), "file");

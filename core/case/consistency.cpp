@@ -32,6 +32,7 @@ class Consistency {
     dimension_ = case_.grid.min.size();
     check_components(case_.gravity, "gravity", case_.source);
     check_faces();
+    check_obstacles();
     const Node* const bodies = case_.source.find("bodies");
     for (std::size_t i = 0; i < case_.bodies.size(); ++i) check_body(case_.bodies[i], bodies->items[i]);
     check_observations();
@@ -101,6 +102,23 @@ class Consistency {
         if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
           problems_.add(place, fmt::format("unknown face '{}' in boundaries; {}", name, allowed_words(name, allowed)));
     for (const std::string& name : allowed) case_.faces.try_emplace(name);
+    for (const auto& [name, face] : case_.faces)
+      if (!face.velocity.empty()) check_velocity(face, *section->find(name));
+  }
+
+  void check_velocity(const FaceCase& face, const Node& section) {
+    if (face.velocity.empty() || face.velocity.size() == dimension_) return;
+    problems_.add(
+        place_of(section, "velocity"),
+        fmt::format("velocity: found {} components; the grid has {} dimensions", face.velocity.size(), dimension_));
+  }
+
+  void check_obstacles() {
+    for (const ObstacleCase& obstacle : case_.obstacles) {
+      const Node& section = *case_.source.find("obstacles")->find(obstacle.name);
+      check_shapes(obstacle.region, section, "obstacle '" + obstacle.name + "'");
+      check_velocity(obstacle.surface, section);
+    }
   }
 
   // ---- bodies ----
@@ -230,7 +248,6 @@ struct Dimension {
 Dimension dimension_of(const Primitive& part) {
   if (const auto* const box = std::get_if<Box>(&part)) return {box->min.size(), "box"};
   if (const auto* const half = std::get_if<HalfSpace>(&part)) return {half->point.size(), "half_space"};
-  if (const auto* const circle = std::get_if<Circle>(&part)) return {circle->centre.size(), "circle"};
   if (const auto* const ball = std::get_if<Sphere>(&part)) return {ball->centre.size(), "sphere"};
   return {0, ""};
 }
@@ -258,8 +275,8 @@ bool check_shape(const Primitive& part, const Node& section, std::size_t dimensi
   }
   const auto [found, shape] = dimension_of(part);
   if (found == 0 || found == dimension) return true;
-  problems.add(place_of(section, shape), fmt::format("{}: found {} components; the grid has {} dimensions{}", shape,
-                                                     found, dimension, shape == "circle" ? "; take sphere" : ""));
+  problems.add(place_of(section, shape),
+               fmt::format("{}: found {} components; the grid has {} dimensions", shape, found, dimension));
   return false;
 }
 

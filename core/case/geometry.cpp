@@ -34,6 +34,24 @@ double distance(const Box& box, std::span<const double> x) {
   return inside < 0 ? std::sqrt(outside) : inside;
 }
 
+SignedDistance signed_distance(const Box& box, std::span<const double> x) {
+  SignedDistance nearest{-infinity, {}};
+  std::array<double, 3> outside{};
+  double squared = 0;
+  for (std::size_t a = x.size(); a-- > 0;) {
+    const double low = box.min[a] - x[a], high = x[a] - box.max[a], depth = std::max(low, high);
+    const double sign = low > high ? -1 : 1, hair = 1e-9 * (box.max[a] - box.min[a]);
+    if (depth > 0) outside[a] = sign * depth, squared += depth * depth;
+    if (depth <= nearest.distance + hair) continue;
+    nearest = {depth, {}};
+    nearest.normal[a] = sign;
+  }
+  if (squared == 0) return nearest;
+  const double length = std::sqrt(squared);
+  for (double& component : outside) component /= length;
+  return {length, outside};
+}
+
 Bounds bounds_of(const Box& box, std::size_t) { return {box.min, box.max}; }
 
 // ---- polygon
@@ -61,15 +79,40 @@ bool contains(const Polygon& polygon, std::span<const double> x) {
   return inside;
 }
 
-double distance(const Polygon& polygon, std::span<const double> x) {
-  double least = infinity;
+/// Calls visit(distance, way, edge) for every edge, with the vectors from its nearest point to x and along it.
+template <class Visit>
+void for_distances(const Polygon& polygon, std::span<const double> x, const Visit& visit) {
   for_edges(polygon, [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
     const double ex = b[0] - a[0], ez = b[1] - a[1], dx = x.front() - a[0], dz = x.back() - a[1];
     const double length2 = ex * ex + ez * ez;
     const double t = length2 > 0 ? std::clamp((ex * dx + ez * dz) / length2, 0.0, 1.0) : 0.0;
-    least = std::min(least, std::hypot(dx - t * ex, dz - t * ez));
+    const std::array<double, 2> way{dx - t * ex, dz - t * ez};
+    visit(std::hypot(way[0], way[1]), way, std::array<double, 2>{ex, ez});
   });
+}
+
+double distance(const Polygon& polygon, std::span<const double> x) {
+  double least = infinity;
+  for_distances(polygon, x, [&](double distance, const auto&, const auto&) { least = std::min(least, distance); });
   return least;
+}
+
+SignedDistance signed_distance(const Polygon& polygon, std::span<const double> x) {
+  const bool inside = contains(polygon, x);
+  const double turn = polygon.signed_area() > 0 ? 1 : -1;
+  SignedDistance nearest{infinity, {}};
+  for_distances(polygon, x, [&](double distance, const std::array<double, 2>& way, const std::array<double, 2>& edge) {
+    const double length = std::hypot(edge[0], edge[1]);
+    if (distance >= nearest.distance || length == 0) return;
+    nearest.distance = distance;
+    // On the edge itself the way has no direction: then the edge has it.
+    const bool on_edge = distance < 1e-9 * length;
+    const double scale = on_edge ? turn / length : (inside ? -1 : 1) / distance;
+    nearest.normal[0] = scale * (on_edge ? edge[1] : way[0]);
+    nearest.normal[x.size() - 1] = scale * (on_edge ? -edge[0] : way[1]);
+  });
+  if (inside) nearest.distance = -nearest.distance;
+  return nearest;
 }
 
 Bounds bounds_of(const Polygon& polygon, std::size_t dimension) {
@@ -102,6 +145,15 @@ double distance(const HalfSpace& half_space, std::span<const double> x) {
   return std::abs(height(half_space, x)) / std::sqrt(length2);
 }
 
+SignedDistance signed_distance(const HalfSpace& half_space, std::span<const double> x) {
+  double length2 = 0;
+  for (const double n : half_space.normal) length2 += n * n;
+  const double length = std::sqrt(length2);
+  SignedDistance found{height(half_space, x) / length, {}};
+  for (std::size_t a = 0; a < x.size(); ++a) found.normal[a] = half_space.normal[a] / length;
+  return found;
+}
+
 /// Bounded on one side of one axis if the normal is parallel to that axis.
 Bounds bounds_of(const HalfSpace& half_space, std::size_t dimension) {
   Bounds bounds = everywhere(dimension);
@@ -131,10 +183,35 @@ double distance(const Sphere& sphere, std::span<const double> x) {
   return std::abs(distance_from_centre(sphere, x) - sphere.radius);
 }
 
+SignedDistance signed_distance(const Sphere& sphere, std::span<const double> x) {
+  const double from_centre = distance_from_centre(sphere, x);
+  SignedDistance found{from_centre - sphere.radius, {}};
+  for (std::size_t a = 0; a < x.size(); ++a)
+    found.normal[a] = from_centre > 0 ? (x[a] - sphere.centre[a]) / from_centre : a + 1 == x.size();
+  return found;
+}
+
 Bounds bounds_of(const Sphere& sphere, std::size_t) {
   Bounds bounds{sphere.centre, sphere.centre};
   for (double& low : bounds[0]) low -= sphere.radius;
   for (double& high : bounds[1]) high += sphere.radius;
+  return bounds;
+}
+
+// ---- circle: along all axes but the first two without end ----
+
+bool contains(const Circle& circle, std::span<const double> x) {
+  return contains(static_cast<const Sphere&>(circle), x.first(2));
+}
+
+double distance(const Circle& circle, std::span<const double> x) {
+  return distance(static_cast<const Sphere&>(circle), x.first(2));
+}
+
+Bounds bounds_of(const Circle& circle, std::size_t dimension) {
+  Bounds bounds = everywhere(dimension);
+  const Bounds disc = bounds_of(static_cast<const Sphere&>(circle), 2);
+  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) std::ranges::copy(disc[side], bounds[side].begin());
   return bounds;
 }
 
@@ -149,6 +226,17 @@ double distance(const Layer& layer, std::span<const double> x) {
   for (const auto& level : {layer.bottom, layer.top})
     if (level) least = std::min(least, std::abs(x.back() - *level));
   return least;
+}
+
+SignedDistance signed_distance(const Layer& layer, std::span<const double> x) {
+  SignedDistance nearest{-infinity, {}};
+  nearest.normal[x.size() - 1] = 1;
+  if (layer.top) nearest.distance = x.back() - *layer.top;
+  if (layer.bottom && *layer.bottom - x.back() > nearest.distance) {
+    nearest.distance = *layer.bottom - x.back();
+    nearest.normal[x.size() - 1] = -1;
+  }
+  return nearest;
 }
 
 Bounds bounds_of(const Layer& layer, std::size_t dimension) {
@@ -166,6 +254,14 @@ double distance(const RasterSide& side, std::span<const double> x) {
   if (!surface) return infinity;
   const auto [slope_x, slope_y] = side.raster->slope(x[0], x[1]);
   return std::abs(x.back() - *surface) / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+}
+
+SignedDistance signed_distance(const RasterSide& side, std::span<const double> x) {
+  const auto surface = side.raster->height(x[0], x[1]);
+  if (!surface) return {infinity, {0, 0, 1}};
+  const auto [slope_x, slope_y] = side.raster->slope(x[0], x[1]);
+  const double sign = side.below ? 1 : -1, scale = sign / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+  return {scale * (x.back() - *surface), {-scale * slope_x, -scale * slope_y, scale}};
 }
 
 /// The raster does not end the region sideways: beyond its edges it is unknown.
@@ -251,6 +347,35 @@ double distance(const Combination auto& combination, std::span<const double> x) 
   return least;
 }
 
+SignedDistance signed_distance(const Union& all, std::span<const double> x) {
+  SignedDistance nearest{infinity, {}};
+  for (const Region& region : all.of) {
+    const SignedDistance own = region.signed_distance(x);
+    if (own.distance < nearest.distance) nearest = own;
+  }
+  return nearest;
+}
+
+SignedDistance signed_distance(const Intersection& all, std::span<const double> x) {
+  SignedDistance furthest{-infinity, {}};
+  for (const Region& region : all.of) {
+    const SignedDistance own = region.signed_distance(x);
+    if (own.distance > furthest.distance) furthest = own;
+  }
+  return furthest;
+}
+
+SignedDistance signed_distance(const Difference& difference, std::span<const double> x) {
+  SignedDistance furthest = difference.of.front().signed_distance(x);
+  for (std::size_t i = 1; i < difference.of.size(); ++i) {
+    SignedDistance own = difference.of[i].signed_distance(x);
+    if (-own.distance <= furthest.distance) continue;
+    for (double& component : own.normal) component = -component;
+    furthest = {-own.distance, own.normal};
+  }
+  return furthest;
+}
+
 /// Cuts `all` down to what `more` bounds.
 void intersect(Bounds& all, const Bounds& more) {
   for (std::size_t a = 0; a < all[0].size(); ++a) {
@@ -290,14 +415,16 @@ Bounds bounds_of(const Difference& difference, std::size_t dimension) {
 
 }  // namespace
 
-double Polygon::area() const {
+double Polygon::area() const { return std::abs(signed_area()); }
+
+double Polygon::signed_area() const {
   double twice = 0;
   // From the first vertex: far from the origin the products would cancel.
   const auto& o = vertices.front();
   for_edges(*this, [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
     twice += (a[0] - o[0]) * (b[1] - o[1]) - (b[0] - o[0]) * (a[1] - o[1]);
   });
-  return std::abs(twice) / 2;
+  return twice / 2;
 }
 
 Membership Region::membership(std::span<const double> x) const {
@@ -336,6 +463,15 @@ double Region::distance_outside(std::span<const double> x) const {
   for (const Primitive& part : parts)
     largest = std::max(largest, std::visit([&](const auto& shape) { return distance_outside_of(shape, x); }, part));
   return largest;
+}
+
+SignedDistance Region::signed_distance(std::span<const double> x) const {
+  SignedDistance furthest{-infinity, {}};
+  for (const Primitive& part : parts) {
+    const SignedDistance own = std::visit([&](const auto& shape) { return sluice::signed_distance(shape, x); }, part);
+    if (own.distance > furthest.distance) furthest = own;
+  }
+  return furthest;
 }
 
 std::array<std::vector<double>, 2> Region::bounds(int dimension) const {

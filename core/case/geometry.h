@@ -22,7 +22,8 @@ struct Box {
 /// that two polygons share belongs to exactly one of them.
 struct Polygon {
   std::vector<std::array<double, 2>> vertices;
-  double area() const;  ///< positive, whatever the orientation
+  double area() const;         ///< positive, whatever the orientation
+  double signed_area() const;  ///< positive where the vertices go round counter-clockwise
 };
 
 /// All x with normal · (x - point) <= 0.
@@ -35,6 +36,7 @@ struct Sphere {
   std::vector<double> centre;
   double radius = 0;
 };
+/// The same in the plane of the first two axes: in 3-D an upright cylinder without end.
 struct Circle : Sphere {};
 
 /// Between two levels along the last axis, half-open: bottom <= x < top. One of them may be absent.
@@ -67,6 +69,12 @@ using Primitive =
 /// `unknown`: a raster has no value there, and it depends on that.
 enum class Membership { no, unknown, yes };
 
+/// Where a point lies to a surface: how far outside [m], negative inside, and the shortest way out.
+struct SignedDistance {
+  double distance = 0;
+  std::array<double, 3> normal{};  ///< unit vector, out of the region; as many components as the point has
+};
+
 /// The intersection of its parts.
 struct Region {
   std::vector<Primitive> parts;
@@ -79,6 +87,10 @@ struct Region {
   /// How far x lies outside: the largest distance to a part that does not hold it, 0 inside [m]. With several parts no
   /// more than the distance to what they have in common.
   double distance_outside(std::span<const double> x) const;
+  /// Distance to the surface and its normal there. Of several parts the one counts that the point is least inside of,
+  /// or furthest outside; of a union, that which it is furthest inside of. Where two surfaces are equally near, the one
+  /// across the later axis counts (box), or the first edge (polygon). Infinitely far where a raster has no value.
+  SignedDistance signed_distance(std::span<const double> x) const;
   /// Corners of the bounding box; infinite where the region is unbounded. `dimension` is 2 or 3.
   std::array<std::vector<double>, 2> bounds(int dimension) const;
 };

@@ -15,6 +15,19 @@ double Table::at(double t) const {
   return value[i - 1] + share * (value[i] - value[i - 1]);
 }
 
+double Table::integral(double t) const {
+  // Over [0, t], or minus that over [t, 0]: pieces between the ends and the points that lie between them.
+  const double from = std::min(0.0, t), to = std::max(0.0, t);
+  double sum = 0, before = from;
+  for (const double point : time) {
+    if (point <= before || point >= to) continue;
+    sum += 0.5 * (at(before) + at(point)) * (point - before);
+    before = point;
+  }
+  sum += 0.5 * (at(before) + at(to)) * (to - before);
+  return t < 0 ? -sum : sum;
+}
+
 namespace value {
 
 std::optional<Table> table(const Node& node, const std::string& name, const Unit& unit, const Range& range,

@@ -15,6 +15,8 @@ struct Table {
 
   static Table constant(double value) { return {{0}, {value}}; }
   double at(double t) const;
+  /// From time 0 to t.
+  double integral(double t) const;
 };
 
 namespace value {

@@ -7,6 +7,7 @@
 
 #include "core/case/case.h"
 #include "core/grid/blocks.h"
+#include "core/grid/contact.h"
 #include "core/grid/lane.h"
 #include "core/grid/nodes.h"
 
@@ -22,18 +23,22 @@ class Faces {
   /// functions.
   Faces(const std::map<std::string, FaceCase>& faces, const GridGeometry<Dim>& grid, int reach, int outside = 0);
 
+  /// Velocities of faces that move, for a step whose velocities change from one time to the other [s].
+  void begin_step(double time_before, double time_now);
+
   /// Velocities that are given whatever the forces are: normal fixed, tangential fixed. Acts on the motion of a node
   /// block; the change is added to dv as well.
-  void fix(const NodeBlock<Dim>& nodes, Lane* motion) const { impose(nodes, motion, false, nullptr); }
+  void fix(const NodeBlock<Dim>& nodes, Lane* motion, Moment moment = Moment::now) const {
+    impose(nodes, motion, moment, {});
+  }
 
   /// The same after forces have acted, with Coulomb friction: the normal impulse m v_n that the wall takes up limits
   /// the tangential impulse to friction * m v_n. A wall that is being pulled (v_n away from it) gives no friction.
-  /// `relief`, a lane {x, y, (z)} a node [m/s], is a part of the velocity whose impulse on the wall gives no friction:
-  /// that of pore water. Null: there is none.
-  void fix_with_friction(const NodeBlock<Dim>& nodes, Lane* motion, const Lane* relief = nullptr) const {
-    impose(nodes, motion, true, relief);
+  void fix_with_friction(const NodeBlock<Dim>& nodes, Lane* motion, const Beside& beside = {}) const {
+    impose(nodes, motion, Moment::kicked, beside);
   }
   bool any_friction() const;
+  bool any_adhesion() const;
 
   const FaceCase& face(int axis, int side) const { return face_[static_cast<std::size_t>(2 * axis + side)]; }
   /// The node on the wall.
@@ -42,10 +47,11 @@ class Faces {
   }
 
  private:
-  void impose(const NodeBlock<Dim>& nodes, Lane* motion, bool friction, const Lane* relief) const;
+  void impose(const NodeBlock<Dim>& nodes, Lane* motion, Moment moment, const Beside& beside) const;
 
   std::array<FaceCase, 2 * Dim> face_{};
   int first_node_;
+  std::array<SurfaceVelocity<Dim>, 2 * Dim> velocity_{};
   Index<Dim> last_node_{};
 };
 

@@ -29,6 +29,14 @@ Place place_of_scheme(const Case& definition) {
   return transfer != nullptr ? transfer->place : shape != nullptr ? shape->place : section->place;
 }
 
+template <int Dim>
+std::array<std::vector<double>, Dim> node_places(const ShapeKernels<Dim>& shape, const GridGeometry<Dim>& grid) {
+  std::array<std::vector<double>, Dim> places;
+  for (int a = 0; a < Dim; ++a)
+    for (int i = 0; i < grid.cells[a] + shape.reach(); ++i) places[a].push_back(shape.node_position(grid, a, i));
+  return places;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -38,11 +46,16 @@ Scene<Dim>::Scene(const Case& definition)
       transfer(transfer_registry().find(definition.scheme.transfer, definition.source.place)),
       scheme(definition.scheme),
       faces(definition.faces, grid, shape->reach(), shape->outside()),
+      dashpots(faces, grid, shape->reach()),
+      obstacles(definition.obstacles, node_places<Dim>(*shape, grid), 0.5 * (shape->reach() + 1)),
       particles(Dim) {
   for (std::size_t a = 0; a < Dim; ++a) gravity[a] = definition.gravity.empty() ? 0 : definition.gravity[a];
   if (transfer.affine)
     affine = particles.columns.declare({"affine_velocity", "1/s", Dim * Dim, Role::state,
                                         "Affine velocity field, row by row: component, direction.", false});
+  if (wants_area())
+    unit_pressure = particles.columns.declare(
+        {"unit_pressure", "1", 2, Role::derived, "Ones and zeros: a stress of one, and none.", false});
   if (transfer.affine && !transfer.gradient && !shape->takes_moments())
     throw CaseError(place_of_scheme(definition), "scheme: transfer '" + scheme.transfer +
                                                      "' needs moments of the shape functions, which shape '" +
@@ -61,6 +74,24 @@ void Scene<Dim>::initialise_domains() {
     shape->fill_domain(grid, 1 / std::round(std::pow(volume, -1.0 / Dim)), numbers);
     for (int c = 0; c < components; ++c) particles.columns.data(domain, c)[p] = numbers[static_cast<std::size_t>(c)];
   }
+}
+
+template <int Dim>
+void Scene<Dim>::resize_nodes() {
+  nodes.resize(blocks, shape->reach());
+  if (wants_area()) {
+    surface.resize(blocks, shape->reach());
+    std::fill_n(particles.columns.data(unit_pressure, 0), particles.size(), 1.0);
+    std::fill_n(particles.columns.data(unit_pressure, 1), particles.size(), 0.0);
+  }
+  obstacles.resize(blocks.node_blocks().size());
+}
+
+template <int Dim>
+void Scene<Dim>::move_boundaries(double dt) {
+  const double before = time - 0.5 * previous_dt, now = time + 0.5 * dt;
+  faces.begin_step(before, now);
+  obstacles.begin_step(time, before, now);
 }
 
 template <int Dim>

@@ -6,9 +6,11 @@
 
 #include "core/case/case.h"
 #include "core/grid/blocks.h"
+#include "core/grid/dashpots.h"
 #include "core/grid/faces.h"
 #include "core/grid/geometry.h"
 #include "core/grid/nodes.h"
+#include "core/grid/obstacles.h"
 #include "core/particles/particles.h"
 #include "core/simulation/stage_clock.h"
 #include "core/transfer/shape_kernels.h"
@@ -26,11 +28,15 @@ struct Scene {
   TransferScheme transfer;
   SchemeCase scheme;
   Faces<Dim> faces;
+  Dashpots<Dim> dashpots;  ///< of the faces that absorb
+  Obstacles<Dim> obstacles;
   Particles particles;
-  ColumnId affine;  ///< C of APIC [1/s], declared when the transfer is affine
-  ColumnId domain;  ///< what part of space a particle stands for; declared when the shape functions ask for it
+  ColumnId affine;         ///< C of APIC [1/s], declared when the transfer is affine
+  ColumnId domain;         ///< what part of space a particle stands for; declared when the shape functions ask for it
+  ColumnId unit_pressure;  ///< declared where the area is wanted
   Blocks<Dim> blocks;
   NodeFields<Dim> nodes;
+  NodeFields<Dim> surface;  ///< area of the surface of the material by node, its forces; only where wanted
 
   double time = 0;         ///< [s]
   std::int64_t step = 0;   ///< steps completed
@@ -46,6 +52,13 @@ struct Scene {
 
   /// Called once, when all bodies are filled: the domains of the particles.
   void initialise_domains();
+  /// Makes room for the fields of the nodes of the active blocks.
+  void resize_nodes();
+  /// Faces and obstacles take their places and velocities for a step of length dt.
+  void move_boundaries(double dt);
+  bool any_friction() const { return faces.any_friction() || obstacles.any_friction(); }
+  /// Whether anything asks for the area of the surface of the material.
+  bool wants_area() const { return faces.any_adhesion() || obstacles.any_adhesion() || dashpots.any(); }
 
   BlockParticles<Dim> view(const ParticleBlock<Dim>& block) const;
   /// The affine columns are null when the transfer is not affine.

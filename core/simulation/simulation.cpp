@@ -1,5 +1,8 @@
 #include "core/simulation/simulation.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +15,24 @@ namespace sluice {
 
 namespace {
 
+/// Throws CaseError where a body lies in an obstacle.
+template <int Dim>
+void require_room(const Scene<Dim>& scene) {
+  const Particles& ps = scene.particles;
+  for (std::size_t p = 0; scene.obstacles.any() && p < ps.size(); ++p) {
+    Vector<Dim> x;
+    for (int a = 0; a < Dim; ++a) x[a] = ps.columns.data(ps.position, a)[p];
+    SignedDistance where;
+    if (const ObstacleCase* const obstacle = scene.obstacles.at(x, &where))
+      throw CaseError(
+          obstacle->place,
+          fmt::format("obstacles.{}: it holds a part of a body of '{}': the material point at ({:g}) m lies "
+                      "{:.3g} m inside",
+                      obstacle->name, ps.material_names[static_cast<std::size_t>(ps.material[p])], fmt::join(x, ", "),
+                      -where.distance));
+  }
+}
+
 template <int Dim>
 class SimulationOf final : public Simulation {
  public:
@@ -23,6 +44,7 @@ class SimulationOf final : public Simulation {
     fill_bodies<Dim>(
         definition, scene_.grid, [&](int m) { return module_->density(m); }, scene_.particles);
     scene_.initialise_domains();
+    require_room(scene_);
     module_->initialise(scene_);
     scene_.motion.largest_speed_squared = largest_speed_squared();
   }
@@ -37,6 +59,7 @@ class SimulationOf final : public Simulation {
     const TimeStepLimit dt = choose_time_step(*module_, scene_, stop);
     longest_dt_ = std::max(longest_dt_, dt.seconds);
     if (dt.name != "output" && dt.seconds < collapse * longest_dt_) throw_time_step_collapsed(scene_, dt);
+    scene_.move_boundaries(dt.seconds);
     module_->step(scene_, dt.seconds);
     if (!scene_.motion.inside) removed_ += apply_outflow(scene_, definition_.outflow);
     const bool arrives = stop - scene_.time <= dt.seconds * (1 + 1e-6);
@@ -54,7 +77,11 @@ class SimulationOf final : public Simulation {
     return limits;
   }
   std::vector<std::pair<std::string, double>> energies() const override { return module_->energies(scene_); }
-  std::vector<std::pair<std::string, double>> step_numbers() const override { return module_->step_numbers(); }
+  std::vector<std::pair<std::string, double>> step_numbers() const override {
+    auto numbers = module_->step_numbers();
+    for (auto& force : scene_.obstacles.forces()) numbers.push_back(std::move(force));
+    return numbers;
+  }
   std::vector<std::pair<std::string, double>> totals() const override { return module_->totals(); }
   double largest_speed() const override { return std::sqrt(scene_.motion.largest_speed_squared); }
   std::map<std::string, double> stage_seconds() const override { return scene_.clock.seconds(); }
@@ -72,13 +99,14 @@ class SimulationOf final : public Simulation {
                              scene_.motion.largest_speed_squared,
                              scene_.motion.largest_strain_rate,
                              longest_dt_};
+    if (scene_.dashpots.any()) archive.reals["dashpots"] = scene_.dashpots.record();
     module_->store(archive);
   }
 
   void restore(const Archive& archive) override {
     restore_particles(archive, scene_.particles);
     scene_.blocks.restore(archive.integers.at("blocks"), scene_.particles, scene_.grid, scene_.shape->reach());
-    scene_.nodes.resize(scene_.blocks, scene_.shape->reach());
+    scene_.resize_nodes();
     const auto& step = archive.integers.at("step");
     scene_.step = step[0];
     removed_ = static_cast<std::size_t>(step[1]);
@@ -90,6 +118,7 @@ class SimulationOf final : public Simulation {
     scene_.motion.largest_speed_squared = loop[3];
     scene_.motion.largest_strain_rate = loop[4];
     longest_dt_ = loop.at(5);
+    if (scene_.dashpots.any()) scene_.dashpots.restore(archive.reals.at("dashpots"));
     module_->restore(archive);
   }
 

@@ -9,7 +9,7 @@ bool activate_blocks(Scene<Dim>& scene) {
   if (!scene.blocks.particle_blocks().empty() && scene.travelled < travel_allowance) return false;
   const auto timing = scene.clock.time(Stage::sort);
   scene.blocks.sort(scene.particles, scene.grid, scene.shape->reach());
-  scene.nodes.resize(scene.blocks, scene.shape->reach());
+  scene.resize_nodes();
   scene.travelled = 0;
   return true;
 }
@@ -20,6 +20,18 @@ void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, Items some)
   parallel_for(some.within(scene.blocks.particle_blocks().size()), [&](std::size_t b) {
     scene.shape->scatter(what, scene.scatter_input(scene.blocks.particle_blocks()[b]), impulse_dt,
                          scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
+  });
+}
+
+template <int Dim>
+void scatter_surface(Scene<Dim>& scene, Items some) {
+  const auto timing = scene.clock.time(Stage::scatter);
+  parallel_for(some.within(scene.blocks.particle_blocks().size()), [&](std::size_t b) {
+    const ParticleBlock<Dim>& block = scene.blocks.particle_blocks()[b];
+    ScatterInput<Dim> in = scene.scatter_input(block);
+    for (int c = 0; c < symmetric_components<Dim>; ++c)
+      in.stress[c] = scene.particles.columns.data(scene.unit_pressure, c < Dim ? 0 : 1);
+    scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, scene.surface.force_tile(b));
   });
 }
 
@@ -95,33 +107,41 @@ void divide_by_mass(const NodeBlock<Dim>& nodes, const Lane* momentum, Lane* mot
 }
 
 template <int Dim>
-void velocity_from_momentum(Scene<Dim>& scene, Items some) {
+void velocity_from_momentum(Scene<Dim>& scene, Moment moment, Items some) {
   const auto timing = scene.clock.time(Stage::nodes);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
     scene.nodes.collect_momentum(scene.blocks, b);
     divide_by_mass<Dim>(block, scene.nodes.momentum(b), scene.nodes.motion(b));
-    scene.faces.fix(block, scene.nodes.motion(b));
+    scene.obstacles.fix(block, b, scene.nodes.momentum(b), scene.nodes.motion(b), moment);
+    scene.faces.fix(block, scene.nodes.motion(b), moment);
   });
 }
 
 namespace {
 
-/// What faces do to the new velocities of a block.
+/// What faces and obstacles do to the new velocities of a block. Faces come last: nothing may pass them.
 template <int Dim>
-void impose_faces(Scene<Dim>& scene, std::size_t b, double kick, double lightest, NodeFields<Dim>* without_friction) {
+void impose_boundaries(Scene<Dim>& scene, std::size_t b, double kick, double lightest,
+                       NodeFields<Dim>* without_friction) {
   const auto& block = scene.blocks.node_blocks()[b];
-  if (without_friction == nullptr) {
-    scene.faces.fix_with_friction(block, scene.nodes.motion(b));
-    return;
-  }
-  without_friction->collect_force(scene.blocks, b);
-  std::array<Lane, block_nodes<Dim>> relief;
-  for (std::size_t n = 0; n < relief.size(); ++n) {
-    const double mass = scene.nodes.momentum(b)[n][0];
-    relief[n] = mass > lightest ? (kick / mass) * vector_part<Dim>(without_friction->force(b)[n]) : Lane{};
-  }
-  scene.faces.fix_with_friction(block, scene.nodes.motion(b), relief.data());
+  const Lane* const momentum = scene.nodes.momentum(b);
+  std::array<Lane, block_nodes<Dim>> relief, area;
+  Beside beside;
+  // Velocities, or velocities per Pascal, from forces.
+  const auto take = [&](NodeFields<Dim>& fields, double sign, std::array<Lane, block_nodes<Dim>>& out) {
+    fields.collect_force(scene.blocks, b);
+    for (std::size_t n = 0; n < out.size(); ++n) {
+      const double mass = momentum[n][0];
+      out[n] = mass > lightest ? (sign * kick / mass) * vector_part<Dim>(fields.force(b)[n]) : Lane{};
+    }
+    return out.data();
+  };
+  if (without_friction != nullptr) beside.relief = take(*without_friction, 1, relief);
+  if (scene.wants_area()) beside.area = take(scene.surface, -1, area);
+  scene.dashpots.impose(block, scene.nodes.motion(b), beside.area, kick, scene.step == 0);
+  scene.obstacles.fix_with_friction(block, b, momentum, scene.nodes.motion(b), beside, kick);
+  scene.faces.fix_with_friction(block, scene.nodes.motion(b), beside);
 }
 
 }  // namespace
@@ -137,7 +157,7 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
     if (collect_force) scene.nodes.collect_force(scene.blocks, b);
     accelerate<Dim>(block, scene.nodes.momentum(b), collect_force ? scene.nodes.force(b) : nullptr, kick, scene.gravity,
                     lightest, scene.nodes.motion(b));
-    impose_faces(scene, b, kick, lightest, without_friction);
+    impose_boundaries(scene, b, kick, lightest, without_friction);
   });
 }
 
@@ -150,7 +170,7 @@ void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_fric
     const Lane* const momentum = scene.nodes.momentum(b);
     scene.nodes.add_force(scene.blocks, b);
     accelerate<Dim>(block, momentum, scene.nodes.force(b), kick, scene.gravity, lightest, scene.nodes.motion(b));
-    impose_faces(scene, b, kick, lightest, without_friction);
+    impose_boundaries(scene, b, kick, lightest, without_friction);
   });
 }
 
@@ -203,7 +223,8 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
   template bool activate_blocks<Dim>(Scene<Dim>&);                                            \
   template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);                        \
   template void divide_by_mass<Dim>(const NodeBlock<Dim>&, const Lane*, Lane*);               \
-  template void velocity_from_momentum<Dim>(Scene<Dim>&, Items);                              \
+  template void velocity_from_momentum<Dim>(Scene<Dim>&, Moment, Items);                      \
+  template void scatter_surface<Dim>(Scene<Dim>&, Items);                                     \
   template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items, NodeFields<Dim>*); \
   template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*, Items);             \
   template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&);                \

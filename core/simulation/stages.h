@@ -34,13 +34,19 @@ void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt = 0, Items s
 template <int Dim>
 void divide_by_mass(const NodeBlock<Dim>& nodes, const Lane* momentum, Lane* motion);
 
-/// Sums the tiles and divides: v = p / m, with the velocities that faces fix, eq. (17).
+/// Sums the tiles and divides: v = p / m, with the velocities that faces and obstacles fix, eq. (17). `moment` says
+/// whose velocities they are, those before this step or the new ones.
 template <int Dim>
-void velocity_from_momentum(Scene<Dim>& scene, Items some = everything);
+void velocity_from_momentum(Scene<Dim>& scene, Moment moment, Items some = everything);
 
-/// v_new = v + kick (f / m + g), with faces and their friction, eq. (18). With `collect_force` the force tiles are
-/// summed; without, the momentum holds the impulse already. `without_friction`, or null, has in its force tiles a part
-/// of all forces, whose pressure on faces gives no friction.
+/// The area of the surface of the material, by node and with its normal, eq. (18b): to be called with every scatter of
+/// forces in a scene that wants it.
+template <int Dim>
+void scatter_surface(Scene<Dim>& scene, Items some = everything);
+
+/// v_new = v + kick (f / m + g), with faces, obstacles and their friction, eq. (18). With `collect_force` the force
+/// tiles are summed; without, the momentum holds the impulse already. `without_friction`, or null, has in its force
+/// tiles a part of all forces, whose pressure on faces gives no friction.
 template <int Dim>
 void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some = everything,
                    NodeFields<Dim>* without_friction = nullptr);

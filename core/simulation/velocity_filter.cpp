@@ -18,14 +18,15 @@ void VelocityFilter<Dim>::resize(const Scene<Dim>& scene) {
   for (auto& nodes : nodes_) nodes.resize(scene.blocks, scene.shape->reach());
 }
 
-/// A face that fixes a velocity fixes it in every u_k.
+/// A face that fixes a velocity fixes it in every u_k. (Obstacles do not: they would take momentum that is not in their
+/// forces.)
 template <int Dim>
 void VelocityFilter<Dim>::take(Scene<Dim>& scene, std::size_t node_block, const Lane* momentum,
                                const Faces<Dim>& faces) {
   const auto& block = scene.blocks.node_blocks()[node_block];
   Lane* const motion = nodes_[0].motion(node_block);
   divide_by_mass<Dim>(block, momentum, motion);
-  faces.fix(block, motion);
+  faces.fix(block, motion, Moment::before);
 }
 
 template <int Dim>
@@ -75,7 +76,7 @@ void VelocityFilter<Dim>::collect(Scene<Dim>& scene, int k, const Faces<Dim>& fa
     const auto& block = scene.blocks.node_blocks()[b];
     nodes.collect_momentum(scene.blocks, b);
     divide_by_mass<Dim>(block, nodes.momentum(b), nodes.motion(b));
-    faces.fix(block, nodes.motion(b));
+    faces.fix(block, nodes.motion(b), Moment::before);
     const auto* const u = reinterpret_cast<const double*>(nodes.motion(b));
     const auto* const u_1 = reinterpret_cast<const double*>(nodes_[0].motion(b));  // at k = 2
     auto* const sum = reinterpret_cast<double*>(target.motion(b)) + change;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstring>
+#include <type_traits>
 
 #include "core/transfer/axis_sums.h"
 
@@ -81,7 +82,7 @@ SLUICE_MULTITARGET void scatter(const ScatterInput<Dim>& in, double impulse_dt, 
           if constexpr (Dim == 3) slope[b][3] = m * in.affine[static_cast<std::size_t>(2 * Dim + b)][p];
         }
       }
-      if constexpr (Dim == 2 && momentum && force) {
+      if constexpr (Dim == 2 && momentum && force && std::is_same_v<decltype(w), ChunkWeights<Dim, Shape>>) {
         add_both_to_nodes<Shape, Affine>(w, k, mass_and_momentum<Dim>(in.mass[p], in.velocity, p), slope,
                                          Body ? body_force<Dim>(in.body_force, p) : Lane{}, flux, tile, force_tile);
         continue;

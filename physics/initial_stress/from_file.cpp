@@ -8,8 +8,8 @@
 #include <unordered_map>
 
 #include "core/output/results_reader.h"
-#include "physics/initial_stress/grid_unknowns.h"
 #include "physics/initial_stress/initial_stress.h"
+#include "physics/statics/grid_unknowns.h"
 
 namespace sluice {
 

@@ -127,18 +127,26 @@ void add_file_keys(Schema<InitialStress>& schema) {
 Schema<InitialStress> make_schema() {
   auto schema = Schema<InitialStress>("initial_stress");
   schema
-      .choice("method", &InitialStress::method,
-              {{"none", Method::none},
-               {"uniform", Method::uniform},
-               {"elastic_equilibrium", Method::elastic_equilibrium},
-               {"k0", Method::k0},
-               {"from_file", Method::from_file}},
-              "How the stress before the first step is found: none; the same everywhere; linear-elastic equilibrium "
-              "under gravity, stresses kept and displacements dropped; the weight of what lies above, and K0 times it "
-              "sideways; or that of an earlier run.",
-              Method::none)
+      .choice(
+          "method", &InitialStress::method,
+          {{"none", Method::none},
+           {"uniform", Method::uniform},
+           {"elastic_equilibrium", Method::elastic_equilibrium},
+           {"equilibrium", Method::equilibrium},
+           {"k0", Method::k0},
+           {"from_file", Method::from_file}},
+          "How the stress before the first step is found: none; the same everywhere; linear-elastic equilibrium "
+          "under gravity, stresses kept and displacements dropped; the same with the strength of the materials; the "
+          "weight of what lies above, and K0 times it sideways; or that of an earlier run.",
+          Method::none)
       .quantities("stress", &InitialStress::stress, unit::stress, any_number, {{4, 6}},
                   "For `uniform`: xx yy zz xy in 2-D, xx yy zz xy yz xz in 3-D, tension positive.", Absent{"none"})
+      .integer("increments", &InitialStress::increments, from_to(1, 1000),
+               "For `equilibrium`: parts in which weight and loads are applied, one after the other.", 1)
+      .quantity("tolerance", &InitialStress::tolerance, unit::none, above_to(0, 0.1),
+                "For `equilibrium`: the largest force out of balance on a node, as a share of the largest force of "
+                "weight and loads on a node.",
+                InitialStress{}.tolerance)
       .custom(
           {.name = "surface",
            .type = field_type::quantity,
@@ -168,8 +176,9 @@ const Schema<InitialStress>& schema() {
 
 /// Keys that belong to one method.
 const std::vector<std::pair<std::string, std::string>> owners{
-    {"stress", "uniform"}, {"surface", "k0"},   {"k0", "k0"},          {"file", "from_file"},
-    {"time", "from_file"}, {"by", "from_file"}, {"state", "from_file"}};
+    {"stress", "uniform"}, {"increments", "equilibrium"}, {"tolerance", "equilibrium"}, {"surface", "k0"},
+    {"k0", "k0"},          {"file", "from_file"},         {"time", "from_file"},        {"by", "from_file"},
+    {"state", "from_file"}};
 
 }  // namespace
 
@@ -198,13 +207,17 @@ FieldDoc initial_stress_doc() {
 }
 
 template <int Dim>
-void apply_initial_stress(InitialStress& initial_stress, Scene<Dim>& scene, const Materials<Dim>& materials,
+void apply_initial_stress(InitialStress& initial_stress, Scene<Dim>& scene, const StressUpdate<Dim>& stress,
                           const SkeletonLoads<Dim>& loads) {
+  const Materials<Dim>& materials = stress.materials();
   switch (initial_stress.method) {
     case Method::none:
       return;
     case Method::elastic_equilibrium:
       elastic_equilibrium(scene, materials, loads);
+      return;
+    case Method::equilibrium:
+      equilibrium(initial_stress, scene, stress, loads);
       return;
     case Method::k0:
       k0_stress(initial_stress, scene, materials, loads);
@@ -223,7 +236,7 @@ void apply_initial_stress(InitialStress& initial_stress, Scene<Dim>& scene, cons
       value = initial_stress.stress[static_cast<std::size_t>(c)];
 }
 
-template void apply_initial_stress<2>(InitialStress&, Scene<2>&, const Materials<2>&, const SkeletonLoads<2>&);
-template void apply_initial_stress<3>(InitialStress&, Scene<3>&, const Materials<3>&, const SkeletonLoads<3>&);
+template void apply_initial_stress<2>(InitialStress&, Scene<2>&, const StressUpdate<2>&, const SkeletonLoads<2>&);
+template void apply_initial_stress<3>(InitialStress&, Scene<3>&, const StressUpdate<3>&, const SkeletonLoads<3>&);
 
 }  // namespace sluice

@@ -9,7 +9,8 @@
 
 #include "core/case/schema.h"
 #include "core/simulation/scene.h"
-#include "physics/materials/materials.h"
+#include "physics/materials/stress_update.h"
+#include "physics/statics/skeleton_loads.h"
 
 namespace sluice {
 
@@ -19,6 +20,7 @@ struct InitialStress {
     none,                 ///< no stress
     uniform,              ///< the same everywhere
     elastic_equilibrium,  ///< linear-elastic equilibrium under gravity
+    equilibrium,          ///< equilibrium with the strength of the materials
     k0,                   ///< the weight of what lies above, and a share of it sideways
     from_file             ///< that of an earlier run
   };
@@ -30,6 +32,9 @@ struct InitialStress {
   };
   Method method = Method::none;
   std::vector<double> stress;  ///< [Pa], tension positive, for `uniform`: xx yy zz xy (yz xz)
+
+  int increments = 1;       ///< of weight and loads, for `equilibrium`
+  double tolerance = 1e-4;  ///< of forces out of balance, over the largest force on a node
 
   std::vector<std::array<double, 2>> surface;  ///< [m], for `k0`: one point for a level; empty: the top of the bodies
   std::optional<double> k0;                    ///< of all materials
@@ -49,16 +54,9 @@ Node resolved(const InitialStress& initial_stress);
 /// The section with its keys, for the reference.
 FieldDoc initial_stress_doc();
 
-/// What acts on the skeleton beside gravity; columns of all particles, null where there is nothing.
-template <int Dim>
-struct SkeletonLoads {
-  const double* pressure = nullptr;                ///< pushes its surroundings apart, like pore water [Pa]
-  std::array<const double*, Dim> body_force = {};  ///< [N]
-};
-
 /// Sets the stress of all particles. `by: automatic` becomes what was done. Throws CaseError.
 template <int Dim>
-void apply_initial_stress(InitialStress& initial_stress, Scene<Dim>& scene, const Materials<Dim>& materials,
+void apply_initial_stress(InitialStress& initial_stress, Scene<Dim>& scene, const StressUpdate<Dim>& stress,
                           const SkeletonLoads<Dim>& loads = {});
 
 /// Linear-elastic equilibrium of the particles where they are, under gravity and the faces of the grid: one sparse
@@ -67,6 +65,12 @@ void apply_initial_stress(InitialStress& initial_stress, Scene<Dim>& scene, cons
 /// friction holds the material. Throws CaseError if nothing holds the body.
 template <int Dim>
 void elastic_equilibrium(Scene<Dim>& scene, const Materials<Dim>& materials, const SkeletonLoads<Dim>& loads);
+
+/// Equilibrium with the materials as they are, from zero to the whole of weight and loads, with the stress update of
+/// the steps: docs/theory.md, eqs. (32e) and (32f). State variables follow. Throws CaseError where there is none.
+template <int Dim>
+void equilibrium(const InitialStress& initial, Scene<Dim>& scene, const StressUpdate<Dim>& stress,
+                 const SkeletonLoads<Dim>& loads);
 
 /// Vertical stress from the weight of what lies above, balanced on the grid, and K0 times it sideways; no shear:
 /// docs/theory.md, eqs. (32a)-(32d). Throws CaseError.

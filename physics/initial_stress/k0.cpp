@@ -6,8 +6,8 @@
 #include <limits>
 #include <map>
 
-#include "physics/initial_stress/grid_unknowns.h"
 #include "physics/initial_stress/initial_stress.h"
+#include "physics/statics/grid_unknowns.h"
 #include "solvers/sparse_cholesky.h"
 
 namespace sluice {

@@ -46,6 +46,16 @@ void Materials<Dim>::declare(Columns& particles) {
   }
 }
 
+template <int Dim>
+std::vector<ColumnId> Materials<Dim>::updated(const Particles& particles) const {
+  std::vector<ColumnId> all{particles.stress, particles.volume};
+  if (hencky_) all.push_back(initial_volume_);
+  for (const auto& ids : state_)
+    for (const ColumnId id : ids)
+      if (std::ranges::none_of(all, [&](ColumnId other) { return other.index == id.index; })) all.push_back(id);
+  return all;
+}
+
 // Multi-target functions need external linkage: the linker chooses among their clones.
 namespace stress_update {
 

@@ -28,6 +28,8 @@ class Materials {
   Node resolved() const;
 
   void declare(Columns& particles);
+  /// All columns that update_stress changes.
+  std::vector<ColumnId> updated(const Particles& particles) const;
 
   /// Objective stress update of one block, eqs. (22)-(25) of docs/theory.md: rotates the stress with the material
   /// (Jaumann, by the exact rotation of Hughes & Winget 1980), or finds the logarithmic strain of the step (`strain:

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/simulation/guard.h"
+#include "physics/materials/f_bar.h"
 
 namespace sluice {
 
@@ -13,23 +14,6 @@ StressTiming timing_of(const Case& definition) {
   static const std::map<std::string, StressTiming> words = {
       {"usf", StressTiming::usf}, {"usl", StressTiming::usl}, {"musl", StressTiming::musl}};
   return words.at(definition.scheme.stress_update);
-}
-
-/// The in-plane trace of the strain increments of n particles.
-template <int Dim>
-void volumetric_strain(const StrainIncrements<Dim>& strain, std::size_t n, double* __restrict trace) {
-  std::copy_n(strain.strain[0], n, trace);
-  for (std::size_t a = 1; a < Dim; ++a)
-    for (std::size_t p = 0; p < n; ++p) trace[p] += strain.strain[a][p];
-}
-
-/// Changes the in-plane trace of the strain increments to `trace`, in equal parts; destroys `trace`.
-template <int Dim>
-void set_volumetric_strain(double* __restrict trace, std::size_t n, const StrainIncrements<Dim>& strain) {
-  for (std::size_t a = 0; a < Dim; ++a)
-    for (std::size_t p = 0; p < n; ++p) trace[p] -= strain.strain[a][p];
-  for (std::size_t a = 0; a < Dim; ++a)
-    for (std::size_t p = 0; p < n; ++p) strain.strain[a][p] += trace[p] / Dim;
 }
 
 }  // namespace
@@ -78,7 +62,7 @@ void StressUpdate<Dim>::gather_motion_and_map_again(Sweep<Dim>& sweep, Scene<Dim
   filter_.add(sweep, scene);
   sweep.over_particles([this, &scene, dt](Items some) { move(scene, dt, next_position_, next_domain_, some); });
   sweep.over_particles([&scene](Items some) { scatter(scene, ScatterWhat::momentum, 0, some); });
-  sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, some); });
+  sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, Moment::now, some); });
   update(sweep, scene, dt);
   sweep.over_particles([this, &scene](Items some) { take_next_position(scene, some); });
 }

@@ -29,6 +29,9 @@ class StressUpdate {
 
   const Materials<Dim>& materials() const { return materials_; }
   StressTiming timing() const { return timing_; }
+  bool f_bar() const { return f_bar_; }
+  /// As declared.
+  ColumnId inertia() const { return inertia_; }
 
   /// `inertia` is the column whose mass [kg] the elastic waves set in motion.
   void declare(Columns& particles, ColumnId inertia);

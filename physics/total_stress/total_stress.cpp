@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "core/case/problems.h"
 #include "core/simulation/energy.h"
 #include "core/simulation/time_step.h"
@@ -31,6 +33,7 @@ const Case& without_water(const Case& definition) {
 template <int Dim>
 TotalStress<Dim>::TotalStress(const Case& definition)
     : stress_(without_water(definition)),
+      implicit_(definition),
       initial_stress_(read_initial_stress(definition.initial_stress)),
       loads_(read_surface_loads(definition)),
       outside_(loads_, {}, 0, grid_of<Dim>(definition.grid)) {
@@ -44,6 +47,7 @@ TotalStress<Dim>::TotalStress(const Case& definition)
 template <int Dim>
 void TotalStress<Dim>::declare(Particles& particles) {
   stress_.declare(particles.columns, particles.mass);
+  implicit_.declare(particles.columns);
   if (!outside_.any()) return;
   pressed_.declare(particles);
   loaded_stress_ = particles.columns.declare(
@@ -58,25 +62,29 @@ double TotalStress<Dim>::density(int material) const {
 
 template <int Dim>
 void TotalStress<Dim>::initialise(Scene<Dim>& scene) {
-  SkeletonLoads<Dim> loads;
-  if (outside_.any()) {
-    activate_blocks(scene);
-    double* push = scene.particles.columns.data(loaded_stress_);
-    std::fill_n(push, scene.particles.size(), 0.0);
-    loads = pressed_.at_rest(scene, outside_, stress_.workspaces(), push);
-  }
-  apply_initial_stress(initial_stress_, scene, stress_.materials(), loads);
+  apply_initial_stress(initial_stress_, scene, stress_, loads_at_rest(scene));
   stress_.initialise(scene);
 }
 
 template <int Dim>
+SkeletonLoads<Dim> TotalStress<Dim>::loads_at_rest(Scene<Dim>& scene) {
+  if (!outside_.any()) return {};
+  activate_blocks(scene);
+  double* push = scene.particles.columns.data(loaded_stress_);
+  std::fill_n(push, scene.particles.size(), 0.0);
+  return pressed_.at_rest(scene, outside_, stress_.workspaces(), push);
+}
+
+template <int Dim>
 std::vector<TimeStepLimit> TotalStress<Dim>::time_step_limits(const Scene<Dim>& scene) const {
+  if (implicit_.active()) return hard_limits(scene);
   const auto& s = scene.scheme;
   return explicit_limits(scene, stress_.fastest_wave(), {s.courant, s.advection, s.strain_per_step});
 }
 
 template <int Dim>
 std::vector<TimeStepLimit> TotalStress<Dim>::hard_limits(const Scene<Dim>& scene) const {
+  if (implicit_.active()) return {{std::numeric_limits<double>::infinity(), "none"}};
   return explicit_limits(scene, stress_.fastest_wave(), {1, 0.5, 0.5});
 }
 
@@ -85,8 +93,12 @@ std::vector<TimeStepLimit> TotalStress<Dim>::hard_limits(const Scene<Dim>& scene
 template <int Dim>
 void TotalStress<Dim>::step(Scene<Dim>& scene, double dt) {
   activate_blocks(scene);
-  stress_.begin_step(scene);
   pressed_.begin_step(scene);
+  if (implicit_.active()) {
+    step_implicit(scene, dt);
+    return;
+  }
+  stress_.begin_step(scene);
   if (rough_under_load(scene)) wall_.resize(scene.blocks, scene.shape->reach());
   switch (stress_.timing()) {
     case StressTiming::usf:
@@ -116,11 +128,12 @@ void TotalStress<Dim>::step_usf(Scene<Dim>& scene, double dt) {
       };
       for_each_block(scene, stress_.workspaces(), body, some);
     });
-  sweep.over_nodes([&](Items some) { velocity_from_momentum(scene, some); });
+  sweep.over_nodes([&](Items some) { velocity_from_momentum(scene, Moment::before, some); });
   stress_.update(sweep, scene, scene.previous_dt, [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
     pressed_.add_work(scene, b, block);  // that of the volumes
     scatter_forces(scene, b, block, work, ScatterWhat::force);
   });
+  if (scene.wants_area()) sweep.over_particles([&](Items some) { scatter_surface(scene, some); });
   sweep.over_nodes([&](Items some) { advance_nodes(scene, scene.kick(dt), false, true, some, loads_alone(scene)); });
   stress_.gather_motion(sweep, scene, dt);
   add_load_work(sweep, scene);
@@ -147,11 +160,28 @@ void TotalStress<Dim>::step_musl(Scene<Dim>& scene, double dt) {
   sweep.run();
 }
 
-/// With APIC nobody asks for the nodes' change of velocity: momentum and impulse can share a lane. Not with linear
-/// functions, where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::smooth).
+/// Displacements from the balance of forces at the end. The loads act on the surface as it is at the beginning.
+template <int Dim>
+void TotalStress<Dim>::step_implicit(Scene<Dim>& scene, double dt) {
+  const double now = scene.time;
+  scene.time = now + implicit_.load_time() * dt;
+  const SkeletonLoads<Dim> loads = loads_at_rest(scene);
+  scene.time = now;
+  const auto with_blocks = [&](const auto& work) {
+    for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b) work(b, scene.blocks.particle_blocks()[b]);
+  };
+  with_blocks([&](std::size_t b, const ParticleBlock<Dim>& block) { pressed_.start_work(scene, b, block); });
+  implicit_.advance(scene, stress_, loads, dt);
+  with_blocks([&](std::size_t b, const ParticleBlock<Dim>& block) { pressed_.add_work(scene, b, block); });
+  pressed_.end_step();
+}
+
+/// With APIC nobody but dashpots asks for the nodes' change of velocity: momentum and impulse can share a lane. Not with
+/// linear functions, where forces on nearly empty nodes must be told apart to be left out (ShapeKernels::smooth).
 template <int Dim>
 void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt) {
   const double kick = scene.kick(dt);
+  if (scene.wants_area()) sweep.over_particles([&scene](Items some) { scatter_surface(scene, some); });
   if (outside_.any()) {
     sweep.over_particles([this, &scene](Items some) {
       const auto timing = scene.clock.time(Stage::scatter);
@@ -164,7 +194,7 @@ void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim
         [this, &scene, kick](Items some) { advance_nodes(scene, kick, true, true, some, loads_alone(scene)); });
     return;
   }
-  const bool together = scene.transfer.affine && scene.shape->smooth();
+  const bool together = scene.transfer.affine && scene.shape->smooth() && !scene.dashpots.any();
   const auto what = together ? ScatterWhat::momentum_and_impulse : ScatterWhat::momentum_and_force;
   sweep.over_particles([&scene, what, kick](Items some) { scatter(scene, what, kick, some); });
   sweep.over_nodes([&scene, together, kick](Items some) { advance_nodes(scene, kick, true, !together, some); });
@@ -218,6 +248,12 @@ std::vector<std::pair<std::string, double>> TotalStress<Dim>::energies(const Sce
 }
 
 template <int Dim>
+std::vector<std::pair<std::string, double>> TotalStress<Dim>::step_numbers() const {
+  if (!implicit_.active()) return {};
+  return {{"evaluations", implicit_.evaluations()}};
+}
+
+template <int Dim>
 std::vector<std::pair<std::string, Node>> TotalStress<Dim>::resolved_sections() const {
   return {{"materials", stress_.materials().resolved()},
           {"initial_stress", resolved(initial_stress_)},
@@ -227,7 +263,8 @@ std::vector<std::pair<std::string, Node>> TotalStress<Dim>::resolved_sections() 
 namespace {
 
 const char* const summary =
-    "Single-phase soil in total stresses, explicit in time: runout of dams and slopes, granular flow, undrained clay.";
+    "Single-phase soil in total stresses, explicit in time or implicit: runout of dams and slopes, granular flow, "
+    "undrained clay.";
 
 std::vector<FieldDoc> keys() { return {initial_stress_doc(), surface_loads_doc()}; }
 

@@ -1,4 +1,5 @@
-/// total_stress: a single phase in total stresses, advanced explicitly in time. docs/theory.md, sections 2 to 5.
+/// total_stress: a single phase in total stresses, advanced explicitly in time or by implicit steps. docs/theory.md,
+/// sections 2 to 5.
 #pragma once
 
 #include <string>
@@ -9,6 +10,7 @@
 #include "physics/initial_stress/initial_stress.h"
 #include "physics/loads/pressed_particles.h"
 #include "physics/materials/stress_update.h"
+#include "physics/total_stress/implicit_step.h"
 
 namespace sluice {
 
@@ -32,21 +34,26 @@ class TotalStress final : public PhysicsModule<Dim> {
     pressed_.restore_work(archive.reals.at("total_stress").at(1));
   }
   std::vector<std::pair<std::string, double>> energies(const Scene<Dim>& scene) const override;
+  std::vector<std::pair<std::string, double>> step_numbers() const override;
   std::vector<std::pair<std::string, Node>> resolved_sections() const override;
 
  private:
   void step_usf(Scene<Dim>& scene, double dt);
   void step_usl(Scene<Dim>& scene, double dt);
   void step_musl(Scene<Dim>& scene, double dt);
+  void step_implicit(Scene<Dim>& scene, double dt);
+  /// Those at the present time.
+  SkeletonLoads<Dim> loads_at_rest(Scene<Dim>& scene);
   void scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt);
   void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
                       ScatterWhat what);
   void add_load_work(Sweep<Dim>& sweep, Scene<Dim>& scene);
   /// The forces of loads alone, or null where no face has friction.
   NodeFields<Dim>* loads_alone(const Scene<Dim>& scene) { return rough_under_load(scene) ? &wall_ : nullptr; }
-  bool rough_under_load(const Scene<Dim>& scene) const { return outside_.any() && scene.faces.any_friction(); }
+  bool rough_under_load(const Scene<Dim>& scene) const { return outside_.any() && scene.any_friction(); }
 
   StressUpdate<Dim> stress_;
+  ImplicitStep<Dim> implicit_;
   InitialStress initial_stress_;
   std::vector<SurfaceLoad> loads_;
   ExternalPressure<Dim> outside_;

@@ -18,7 +18,7 @@ std::map<std::string, FaceCase> closed_faces(const Case& definition, const Water
     const auto found = water.faces.find(name);
     const bool open =
         found != water.faces.end() && (found->second.pressure || found->second.head || found->second.flux);
-    if (!open) closed.normal = face.normal;
+    if (!open && face.normal != FaceCase::Normal::free) closed.normal = FaceCase::Normal::fixed;
     faces[name] = closed;
   }
   return faces;

@@ -31,6 +31,22 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
       outside_(loads_, water_.ponds, -water_.density * definition.gravity.back(), grid_of<Dim>(definition.grid)),
       pressure_(water_, grid_of<Dim>(definition.grid), definition.gravity.back()) {
   check_changes(definition);
+  if (definition.scheme.integration != "explicit")
+    throw CaseError(
+        definition.source.find("scheme")->find("integration")->place,
+        fmt::format("scheme.integration: {} is for `physics: total_stress`; two_phase takes explicit steps of "
+                    "the soil, with the pressure of the water implicit",
+                    definition.scheme.integration));
+  for (const auto& [name, face] : definition.faces)
+    if (face.absorbing)
+      throw CaseError(definition.source.find("boundaries")->find(name)->place,
+                      fmt::format("boundaries.{}: absorbing: the physics two_phase does not know it, for the waves of "
+                                  "soil with water are others; take `physics: total_stress`",
+                                  name));
+  if (!definition.obstacles.empty())
+    throw CaseError(definition.obstacles.front().place,
+                    "obstacles: the physics two_phase does not know them, for it cannot hold water back at their "
+                    "surfaces; take `physics: total_stress`");
 }
 
 /// Points that change keep their grains and their water: porosity follows from the density of the grains.
@@ -74,8 +90,7 @@ void TwoPhase<Dim>::initialise(Scene<Dim>& scene) {
   pores_.set_initial_pressure(scene);
   if (water_.initial.method == InitialPressure::Method::steady_seepage) start_seepage(scene);
   activate_blocks(scene);
-  apply_initial_stress(initial_stress_, scene, stress_.materials(),
-                       pores_.skeleton_loads(scene, outside_, stress_.workspaces()));
+  apply_initial_stress(initial_stress_, scene, stress_, pores_.skeleton_loads(scene, outside_, stress_.workspaces()));
   stress_.initialise(scene);
 }
 
@@ -160,8 +175,9 @@ void TwoPhase<Dim>::predict(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
     for_each_block(scene, stress_.workspaces(), body, some);
   });
   if (relative_.active()) sweep.over_particles([&](Items some) { relative_.scatter(scene, some); });
+  if (scene.wants_area()) sweep.over_particles([&scene](Items some) { scatter_surface(scene, some); });
   if (stress_first) {
-    sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, some); });
+    sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, Moment::before, some); });
     stress_.update(sweep, scene, scene.previous_dt, [=, this, &scene](std::size_t b, const auto& block, auto& work) {
       pores_.pressed().add_work(scene, b, block);
       forces(b, block, work, ScatterWhat::force);

@@ -244,7 +244,7 @@ TEST(CaseFile, WrongFaces) {
   EXPECT_EQ(message_with_more("boundaries: {left: rollers}\n"),
             "c.yaml:8:20: boundaries.left: found 'rollers'; allowed: free, roller, fixed; did you mean 'roller'?");
   EXPECT_EQ(message_with_more("boundaries: {left: {friction: 0.4}}\n"),
-            "c.yaml:8:31: boundaries.left: friction needs `normal: fixed`");
+            "c.yaml:8:31: boundaries.left: friction needs `normal: fixed` or `normal: contact`");
   EXPECT_EQ(message_with_more("boundaries: {left: {normal: fixed, tangential: fixed, friction: 0.4}}\n"),
             "c.yaml:8:65: boundaries.left: friction contradicts `tangential: fixed`; leave out one of them");
   EXPECT_EQ(message_with_more("boundaries: {left: {normal: fixed, friction: -1}}\n"),

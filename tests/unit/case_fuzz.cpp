@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -128,7 +129,7 @@ void fuzz(const std::filesystem::path& folder, const Read& read) {
     for (std::size_t acts = 1 + below(random, 4); acts > 0; --acts)
       damage(text, files[below(random, files.size())].second, random);
     SCOPED_TRACE(name + ", round " + std::to_string(round) + ":\n" + text);
-    const auto start = Clock::now();
+    const std::clock_t start = std::clock();
     try {
       read(text, name);
       ++accepted;
@@ -139,7 +140,8 @@ void fuzz(const std::filesystem::path& folder, const Read& read) {
     } catch (const std::exception& error) {
       ADD_FAILURE() << "an exception that is no CaseError: " << error.what();
     }
-    EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 5) << "hangs";
+    EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 20)
+        << "as good as hangs";  // of the processor
   }
   // The damage is neither too little nor too much to find anything.
   EXPECT_GT(accepted, 0u);

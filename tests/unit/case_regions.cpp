@@ -65,6 +65,7 @@ TEST(Regions, FilledMeasureIsExactToFirstOrder) {
   const double r = 1.3;
   expect_measure<2>(disc, pi * r * r, 2 * pi * r);
   expect_measure<3>(ball, 4.0 / 3 * pi * r * r * r, 4 * pi * r * r);
+  expect_measure<3>(disc + ", layer: {bottom: 0.5 m, top: 3 m}", 2.5 * pi * r * r, 2 * pi * r * (2.5 + r));
   expect_measure<2>("layer: {bottom: 0.33 m, top: 1.77 m}", 4 * 1.44, 8);
   expect_measure<3>("layer: {top: 1.77 m}", 16 * 1.77, 16);
   // A ring, and the spherical shell.
@@ -179,8 +180,7 @@ TEST(Regions, MessagesNamePlaceAndWhatIsAllowed) {
             std::string::npos);
   EXPECT_NE(error_of(2, "layer: {bottom: 2 m, top: 1 m}").find("layer: top is 1 m; it must be above bottom, 2 m"),
             std::string::npos);
-  EXPECT_NE(error_of(3, "circle: {centre: [2 m, 2 m], radius: 1 m}")
-                .find("c.yaml:9:30: circle: found 2 components; the grid has 3 dimensions; take sphere"),
+  EXPECT_NE(error_of(3, "circle: {centre: [2 m, 2 m, 2 m], radius: 1 m}").find("c.yaml:9:39: centre"),
             std::string::npos);
   EXPECT_NE(error_of(2, "circle: {centre: [2 m, 2 m, 2 m], radius: 1 m}").find("c.yaml:9:39: centre"),
             std::string::npos);

@@ -30,6 +30,13 @@ std::unique_ptr<Simulation> dam(int dimension, const Scheme& scheme, const std::
       "  clay: {model: mohr_coulomb, density: 1900 kg/m3, youngs_modulus: 2 MPa, poisson_ratio: 0.3, "
       "friction_angle: 0 deg, cohesion: 5 kPa}";
   scene.scheme = scheme;
+  scene.more =
+      dimension == 2
+          ? "obstacles:\n"
+            "  wall: {box: {min: [8.5 m, 0 m], max: [10 m, 6 m]}, friction: 0.3, velocity: [-1 m/s, 0]}\n"
+            "  ramp: {polygon: [[-10 m, 0 m], [-6.1 m, 0 m], [-10 m, 4 m]], normal: fixed, adhesion: 1 kPa}\n"
+          : "obstacles: {wall: {box: {min: [2.75 m, 0 m, 0 m], max: [4 m, 3 m, 3 m]}, friction: 0.3, velocity: "
+            "[[[0 s, -0.5 m/s], [1 s, 1 m/s]], 0, 0]}}\n";
   auto simulation = simulate(scene);
   // Something to cross cells and blocks, so that particles are sorted several times.
   set_column(simulation->particles(), "velocity", 0, [](const auto& x) { return 3 + 0.3 * x[1]; });

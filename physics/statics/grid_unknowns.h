@@ -2,10 +2,14 @@
 /// particles in order of their cells, stencils.
 #pragma once
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <numeric>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -13,7 +17,8 @@
 
 namespace sluice {
 
-/// Degrees of freedom: the components of the nodes that particles reach, from `first` on, less those that faces fix.
+/// Degrees of freedom: the components of the nodes that particles reach, from `first` on, less those that faces and
+/// obstacles fix.
 template <int Dim>
 class Unknowns {
  public:
@@ -21,25 +26,37 @@ class Unknowns {
 
   /// The unknown of a node's component, or -1 if it is fixed. Numbers are given in order of first asking.
   std::array<int, Dim> of(const Index<Dim>& node) {
-    std::int64_t key = 0;
-    for (int a = Dim - 1; a >= 0; --a) key = key * (std::int64_t{1} << 20) + node[a];
-    const auto [place, fresh] = numbers_.try_emplace(key);
+    const auto [place, fresh] = numbers_.try_emplace(key_of(node));
     if (fresh)
       for (int a = 0; a < Dim; ++a)
         place->second[static_cast<std::size_t>(a)] = fixed(node, a) || a < first_ ? -1 : count_++;
     return place->second;
   }
+  /// The same for a node that may not have been asked for: -1 then.
+  std::array<int, Dim> find(const Index<Dim>& node) const {
+    const auto place = numbers_.find(key_of(node));
+    if (place != numbers_.end()) return place->second;
+    std::array<int, Dim> none;
+    none.fill(-1);
+    return none;
+  }
   int count() const { return count_; }
 
  private:
+  static std::int64_t key_of(const Index<Dim>& node) {
+    std::int64_t key = 0;
+    for (int a = Dim - 1; a >= 0; --a) key = key * (std::int64_t{1} << 20) + node[a];
+    return key;
+  }
   bool fixed(const Index<Dim>& node, int component) const {
     for (int axis = 0; axis < Dim; ++axis)
       for (int side = 0; side < 2; ++side) {
         const FaceCase& face = scene_.faces.face(axis, side);
-        if (node[axis] != scene_.faces.wall_node(axis, side) || face.normal == FaceCase::Normal::free) continue;
+        const bool free = face.normal == FaceCase::Normal::free && !face.absorbing;
+        if (node[axis] != scene_.faces.wall_node(axis, side) || free) continue;
         if (component == axis || face.tangential != FaceCase::Tangential::free) return true;
       }
-    return false;
+    return scene_.obstacles.any() && scene_.obstacles.holds(node, component);
   }
 
   const Scene<Dim>& scene_;
@@ -76,6 +93,23 @@ Stencil<Dim> stencil_at(const Scene<Dim>& scene, std::size_t p) {
   for (std::size_t c = 0; c < components; ++c)
     domain[c] = scene.particles.columns.data(scene.domain, static_cast<int>(c))[p];
   return scene.shape->stencil(scene.grid, x, {domain.data(), components});
+}
+
+/// "(3.5, 2) m": where the node of an unknown is.
+template <int Dim>
+std::string place_of(const Scene<Dim>& scene, const Unknowns<Dim>& unknowns, int unknown) {
+  std::vector<std::string> place;
+  for (const auto& block : scene.blocks.node_blocks())
+    for (int n = 0; n < block_nodes<Dim>; ++n) {
+      Index<Dim> node = block.first_node;
+      for (int a = 0; a < Dim; ++a) node[a] += n / power(block_width<Dim>, a) % block_width<Dim>;
+      const auto own = unknowns.find(node);
+      if (std::find(own.begin(), own.end(), unknown) == own.end()) continue;
+      for (int a = 0; a < Dim; ++a)
+        place.push_back(fmt::format("{:.4g}", scene.shape->node_position(scene.grid, a, node[a])));
+      return fmt::format("({}) m", fmt::join(place, ", "));
+    }
+  return "nowhere";
 }
 
 }  // namespace sluice

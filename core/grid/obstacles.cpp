@@ -1,0 +1,215 @@
+#include "core/grid/obstacles.h"
+
+#include <algorithm>
+
+namespace sluice {
+
+template <int Dim>
+Obstacles<Dim>::Obstacles(const std::vector<ObstacleCase>& obstacles, std::array<std::vector<double>, Dim> places,
+                          double support)
+    : places_(std::move(places)) {
+  for (const ObstacleCase& definition : obstacles)
+    obstacles_.push_back({definition, {}, {}, definition.region.bounds(Dim)});
+  // Cells are uniform, nodes are not quite: some shape functions have their outermost nodes on the walls.
+  for (std::size_t a = 0; a < Dim; ++a) {
+    const std::size_t last = places_[a].size() - 1;
+    double cell = 0;
+    for (std::size_t i = 0; i < last; ++i) cell = std::max(cell, places_[a][i + 1] - places_[a][i]);
+    support_[a] = support * cell;
+    hair_ = a == 0 ? 1e-9 * cell : std::min(hair_, 1e-9 * cell);
+  }
+  begin_step(0, 0, 0);
+}
+
+template <int Dim>
+bool Obstacles<Dim>::any_friction() const {
+  return std::any_of(obstacles_.begin(), obstacles_.end(), [](const Obstacle& obstacle) {
+    return obstacle.definition.surface.tangential == FaceCase::Tangential::friction;
+  });
+}
+
+template <int Dim>
+bool Obstacles<Dim>::any_adhesion() const {
+  return std::any_of(obstacles_.begin(), obstacles_.end(),
+                     [](const Obstacle& obstacle) { return obstacle.definition.surface.adhesion > 0; });
+}
+
+template <int Dim>
+void Obstacles<Dim>::begin_step(double time, double time_before, double time_now) {
+  for (Obstacle& obstacle : obstacles_) {
+    const FaceCase& surface = obstacle.definition.surface;
+    obstacle.velocity.evaluate(surface, time_before, time_now);
+    const Vector<Dim> before = obstacle.travel;
+    for (std::size_t a = 0; a < surface.velocity.size(); ++a) obstacle.travel[a] = surface.velocity[a].integral(time);
+    if (obstacle.travel != before) ++version_;
+  }
+}
+
+template <int Dim>
+void Obstacles<Dim>::resize(std::size_t node_blocks) {
+  if (!any()) return;
+  ++version_;
+  blocks_.resize(node_blocks);
+  force_.assign(node_blocks * obstacles_.size(), {});
+}
+
+// ---- where nodes lie ----
+
+template <int Dim>
+Vector<Dim> Obstacles<Dim>::place(const Index<Dim>& node) const {
+  Vector<Dim> x;
+  for (int a = 0; a < Dim; ++a) x[a] = places_[a][static_cast<std::size_t>(node[a])];
+  return x;
+}
+
+template <int Dim>
+SignedDistance Obstacles<Dim>::where(const Obstacle& obstacle, Vector<Dim> x) const {
+  for (int a = 0; a < Dim; ++a) x[a] -= obstacle.travel[a];
+  return obstacle.definition.region.signed_distance(x);
+}
+
+/// The nodes [first, second) of the grid that a block has, and that particles reach. The margins of tiles go beyond it.
+template <int Dim>
+std::array<Index<Dim>, 2> Obstacles<Dim>::range(const NodeBlock<Dim>& nodes) const {
+  std::array<Index<Dim>, 2> range;
+  for (int a = 0; a < Dim; ++a) {
+    range[0][a] = std::max(0, nodes.first_node[a] + nodes.low[a]);
+    range[1][a] = std::min(static_cast<int>(places_[a].size()), nodes.first_node[a] + nodes.high[a]);
+  }
+  return range;
+}
+
+/// Whether the box around an obstacle, wider by `margin`, reaches the nodes of a block.
+template <int Dim>
+bool Obstacles<Dim>::near(const Obstacle& obstacle, const NodeBlock<Dim>& nodes, const Vector<Dim>& margin) const {
+  const auto [low, high] = range(nodes);
+  for (int a = 0; a < Dim; ++a) {
+    if (low[a] >= high[a]) return false;
+    const auto axis = static_cast<std::size_t>(a);
+    const double first = places_[a][static_cast<std::size_t>(low[a])] - obstacle.travel[a];
+    const double last = places_[a][static_cast<std::size_t>(high[a] - 1)] - obstacle.travel[a];
+    if (last < obstacle.bounds[0][axis] - margin[a] || first > obstacle.bounds[1][axis] + margin[a]) return false;
+  }
+  return true;
+}
+
+template <int Dim>
+const std::vector<typename Obstacles<Dim>::Contact>& Obstacles<Dim>::contacts(const NodeBlock<Dim>& nodes,
+                                                                              std::size_t block) {
+  Block& known = blocks_[block];
+  if (known.version == version_) return known.contacts;
+  known.contacts.clear();
+  for (std::size_t o = 0; o < obstacles_.size(); ++o) find(nodes, o, known.contacts);
+  known.version = version_;
+  return known.contacts;
+}
+
+/// Adds the nodes of the block that the obstacle with this number acts on.
+template <int Dim>
+void Obstacles<Dim>::find(const NodeBlock<Dim>& nodes, std::size_t number, std::vector<Contact>& contacts) const {
+  constexpr int width = block_width<Dim>;
+  const Obstacle& obstacle = obstacles_[number];
+  const bool adheres = obstacle.definition.surface.adhesion > 0;
+  Vector<Dim> margin = support_;
+  if (!adheres) margin.fill(hair_);
+  if (!near(obstacle, nodes, margin)) return;
+  const auto [low, high] = range(nodes);
+  for (int n = 0; n < block_nodes<Dim>; ++n) {
+    Index<Dim> node;
+    bool reached = true;
+    for (int a = 0, rest = n; a < Dim; ++a, rest /= width) {
+      node[a] = nodes.first_node[a] + rest % width;
+      reached = reached && node[a] >= low[a] && node[a] < high[a];
+    }
+    if (!reached) continue;
+    const SignedDistance found = where(obstacle, place(node));
+    Contact contact{n, static_cast<std::int32_t>(number), found.distance <= hair_, {}};
+    double support = 0;
+    for (int a = 0; a < Dim; ++a) {
+      contact.out[a] = -found.normal[static_cast<std::size_t>(a)];
+      support += std::abs(contact.out[a]) * support_[a];
+    }
+    if (contact.inside || (adheres && found.distance < support)) contacts.push_back(contact);
+  }
+}
+
+// ---- what they do ----
+
+template <int Dim>
+void Obstacles<Dim>::impose(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, Lane* motion,
+                            Moment moment, const Beside& beside) {
+  for (const Contact& contact : contacts(nodes, block)) {
+    const double mass = momentum[contact.node][0];
+    if (!(mass > 0) || (!contact.inside && beside.area == nullptr)) continue;
+    const Obstacle& obstacle = obstacles_[static_cast<std::size_t>(contact.obstacle)];
+    const FaceCase& surface = obstacle.definition.surface;
+    Touch<Dim> touch;
+    touch.out = contact.out;
+    touch.velocity = moment == Moment::before ? obstacle.velocity.before : obstacle.velocity.now;
+    touch.friction = moment == Moment::kicked;
+    double area = 0;
+    for (int a = 0; a < Dim; ++a) {
+      if (beside.relief != nullptr) touch.relief[a] = beside.relief[contact.node][a];
+      if (beside.area != nullptr) area += touch.out[a] * beside.area[contact.node][a];
+    }
+    touch.adhesion = surface.adhesion * std::max(0.0, area);
+    const NodeMotion<Dim> own{motion + contact.node * motion_lanes<Dim>};
+    const Vector<Dim> before = own.velocity();
+    if (contact.inside)
+      impose_on_node<Dim>(surface, touch, own);
+    else
+      adhere_on_node<Dim>(touch, own);
+    if (moment != Moment::kicked) continue;
+    Vector<Dim>& force = force_[block * obstacles_.size() + static_cast<std::size_t>(contact.obstacle)];
+    for (int a = 0; a < Dim; ++a) force[a] += mass * (before[a] - own.v(a));
+  }
+}
+
+template <int Dim>
+void Obstacles<Dim>::fix_with_friction(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum,
+                                       Lane* motion, const Beside& beside, double kick) {
+  if (!any()) return;
+  Vector<Dim>* const force = force_.data() + block * obstacles_.size();
+  std::fill_n(force, obstacles_.size(), Vector<Dim>{});
+  impose(nodes, block, momentum, motion, Moment::kicked, beside);
+  for (std::size_t o = 0; o < obstacles_.size(); ++o)
+    for (double& component : force[o]) component = kick > 0 ? component / kick : 0;
+}
+
+// ---- what others ask ----
+
+template <int Dim>
+std::vector<std::pair<std::string, double>> Obstacles<Dim>::forces() const {
+  static const char* const axes[] = {"x", "y", "z"};
+  std::vector<std::pair<std::string, double>> all;
+  for (std::size_t o = 0; o < obstacles_.size(); ++o)
+    for (int a = 0; a < Dim; ++a) {
+      double sum = 0;
+      for (std::size_t b = 0; b * obstacles_.size() < force_.size(); ++b) sum += force_[b * obstacles_.size() + o][a];
+      all.emplace_back(obstacles_[o].definition.name + "_force_" + axes[a] + "_N", sum);
+    }
+  return all;
+}
+
+template <int Dim>
+const ObstacleCase* Obstacles<Dim>::at(const Vector<Dim>& x, SignedDistance* found) const {
+  for (const Obstacle& obstacle : obstacles_) {
+    *found = where(obstacle, x);
+    if (found->distance <= hair_) return &obstacle.definition;
+  }
+  return nullptr;
+}
+
+template <int Dim>
+bool Obstacles<Dim>::holds(const Index<Dim>& node, int component) const {
+  SignedDistance found;
+  const ObstacleCase* const obstacle = at(place(node), &found);
+  if (obstacle == nullptr) return false;
+  return obstacle->surface.tangential != FaceCase::Tangential::free ||
+         found.normal[static_cast<std::size_t>(component)] != 0;
+}
+
+template class Obstacles<2>;
+template class Obstacles<3>;
+
+}  // namespace sluice
