@@ -154,13 +154,6 @@ SLUICE_ALWAYS_INLINE void add_to_nodes(const CornerWeights<Dim, Shape>& w, int p
   }
 }
 
-template <class Shape, bool Affine>
-SLUICE_ALWAYS_INLINE void add_both_to_nodes(const CornerWeights<2, Shape>& w, int p, Lane base, const Lane* slope,
-                                            Lane body, const Lane* flux, Lane* tile, Lane* force_tile) {
-  add_to_nodes<2, Shape, Affine, false>(w, p, base, slope, flux, tile);
-  add_to_nodes<2, Shape, false, true>(w, p, body, slope, flux, force_tile);
-}
-
 /// The velocity (and its change) at corner c of particle p.
 template <int Dim, class Shape>
 SLUICE_ALWAYS_INLINE void at_corner(const CornerWeights<Dim, Shape>& w, int c, int p, const Lane* motion_tile,
