@@ -14,7 +14,8 @@ namespace sluice {
 template <int Dim>
 class CellAverages {
  public:
-  void resize(const Blocks<Dim>& blocks);
+  /// `shift` is ShapeKernels::node_shift: cells from node to node, of the grid or moved by half a cell.
+  void resize(const Blocks<Dim>& blocks, double shift);
 
   /// Notes the cell of each particle of the block. A strain belongs to the place where it was gathered.
   void locate(const BlockParticles<Dim>& block);
@@ -30,6 +31,7 @@ class CellAverages {
   struct Sums {
     double weight = 0, product = 0;
   };
+  double shift_ = 0;
   std::vector<Sums> tiles_;
   std::vector<std::int32_t> cell_;  // of each particle, in the tile of its block
 };

@@ -118,6 +118,8 @@ class ShapeKernels {
   virtual int outside() const = 0;  ///< so many of the nodes of an axis lie beyond each wall
   /// Slopes go to zero with the values: a node that holds but a hair of a particle is not accelerated without bounds.
   virtual bool smooth() const = 0;
+  /// Where nodes stand but at walls: 0, at the corners of cells; 1/2, in their middles.
+  virtual double node_shift() const = 0;
   /// A node with less than this share of a particle takes no force.
   virtual double negligible_weight() const = 0;
 

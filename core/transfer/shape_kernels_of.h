@@ -27,6 +27,10 @@ class ShapeKernelsOf final : public ShapeKernels<Dim> {
   int reach() const override { return Shape::reach; }
   int outside() const override { return Shape::outside; }
   bool smooth() const override { return Shape::smooth; }
+  double node_shift() const override {
+    const double place = Shape::node_offset(4, 8);  // of an inner node, far from walls
+    return place - std::floor(place);
+  }
   double negligible_weight() const override { return Shape::negligible_weight; }
 
   double node_position(const GridGeometry<Dim>& grid, int axis, int i) const override {

@@ -188,7 +188,7 @@ StrainIncrements<Dim> StressUpdate<Dim>::kept_strain(Scene<Dim>& scene, std::uin
 
 template <int Dim>
 void StressUpdate<Dim>::begin_step(const Scene<Dim>& scene) {
-  if (f_bar_) cells_.resize(scene.blocks);
+  if (f_bar_) cells_.resize(scene.blocks, scene.shape->node_shift());
   motion_.assign(scene.blocks.particle_blocks().size(), {});
   stress_.assign(scene.blocks.particle_blocks().size(), {});
 }

@@ -57,7 +57,7 @@ StressTrial<Dim>::StressTrial(Scene<Dim>& scene, const StressUpdate<Dim>& stress
     for (auto& column : gradient_) column.resize(count);
     for (auto& column : piola_) column.resize(count + column_alignment / sizeof(double));
   }
-  if (stress.f_bar()) cells_.resize(scene.blocks);
+  if (stress.f_bar()) cells_.resize(scene.blocks, scene.shape->node_shift());
   sound_.resize(scene.blocks.particle_blocks().size());
 }
 

@@ -17,12 +17,12 @@ struct Footing {
 
 /// Mean pressure under the footing, over the strength, when it has gone down by 0.5 to 0.6 % of its width.
 ///
-/// One half of it. Shape functions of even order have nodes on edges of cells: the last node that the footing holds
-/// lies half a cell inside its edge, so that its smeared edge, the integral of the sum of the functions that it holds,
-/// is where the edge is. The footing starts slowly and then sinks with 2 cm/s: inertia is rho v^2 = 1 Pa, and shear
-/// waves cross the clay 20 times.
+/// One half of it. The last node that the footing holds lies half a cell inside its edge, so that its smeared edge, the
+/// integral of the sum of the functions that it holds, is where the edge is: nodes of quadratic B-splines stand in the
+/// middles of cells, others on their edges. The footing starts slowly and then sinks with 2 cm/s: inertia is rho v^2 =
+/// 1 Pa, and shear waves cross the clay 20 times.
 double bearing_factor(const Footing& footing) {
-  const double half_width = 1 + footing.cell / 2, end = 0.7;
+  const double half_width = 1 + (footing.shape == "quadratic_bspline" ? 0 : footing.cell / 2), end = 0.7;
   SceneText scene{
       .grid = fmt::format("{{min: [0 m, 0 m], max: [4 m, 2.5 m], cell: {} m}}", footing.cell),
       .material =
@@ -64,6 +64,15 @@ TEST(StripFooting, CarriesThatOnAnyShapeFunctionsWhereCellsAreSmall) {
   const double coarse = bearing_factor({"cubic_bspline", 0.25, false}),
                fine = bearing_factor({"cubic_bspline", 0.125, false});
   EXPECT_NEAR((2 * fine - coarse) / exact, 1, 0.03);
+}
+
+// Quadratic B-splines: on cells whose means are shared from node to node the factor is 6 % short on cells of an eighth,
+// and tends to the exact one with the cell. With the cells of the grid it was 4.2, and fell as the footing sank
+// (tests/verification/f_bar.cpp says why).
+TEST(StripFooting, CarriesThatOnQuadraticBSplinesAsCellsGoToZero) {
+  const double coarse = bearing_factor({"quadratic_bspline"}), fine = bearing_factor({"quadratic_bspline", 0.125});
+  EXPECT_NEAR(fine / exact, 1, 0.08);
+  EXPECT_NEAR((2 * fine - coarse) / exact, 1, 0.015);
 }
 
 // Control: without F-bar the clay cannot flow at constant volume, and carries far too much.
