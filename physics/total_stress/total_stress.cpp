@@ -167,12 +167,11 @@ void TotalStress<Dim>::step_implicit(Scene<Dim>& scene, double dt) {
   scene.time = now + implicit_.load_time() * dt;
   const SkeletonLoads<Dim> loads = loads_at_rest(scene);
   scene.time = now;
-  const auto with_blocks = [&](const auto& work) {
-    for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b) work(b, scene.blocks.particle_blocks()[b]);
-  };
-  with_blocks([&](std::size_t b, const ParticleBlock<Dim>& block) { pressed_.start_work(scene, b, block); });
+  for_each_block(scene, stress_.workspaces(),
+                 [&](std::size_t b, const auto& block, Workspace<Dim>&) { pressed_.start_work(scene, b, block); });
   implicit_.advance(scene, stress_, loads, dt);
-  with_blocks([&](std::size_t b, const ParticleBlock<Dim>& block) { pressed_.add_work(scene, b, block); });
+  for_each_block(scene, stress_.workspaces(),
+                 [&](std::size_t b, const auto& block, Workspace<Dim>&) { pressed_.add_work(scene, b, block); });
   pressed_.end_step();
 }
 

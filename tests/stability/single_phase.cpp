@@ -9,13 +9,6 @@
 namespace sluice {
 namespace {
 
-double total_energy(const Simulation& simulation) {
-  double sum = 0;
-  for (const auto& [name, value] : simulation.energies())
-    if (name == "kinetic" || name == "elastic") sum += value;
-  return sum;
-}
-
 // ---- two elastic discs collide (F10) ----
 
 struct Collision {
@@ -32,22 +25,19 @@ Collision collide(const Scheme& scheme) {
        .bodies = "  - {material: soil, circle: {centre: [0.2 m, 0.2 m], radius: 0.2 m}, velocity: [0.1, 0.1 m/s]}\n"
                  "  - {material: soil, circle: {centre: [0.8 m, 0.8 m], radius: 0.2 m}, velocity: [-0.1, -0.1 m/s]}",
        .scheme = scheme});
-  const double start = total_energy(*simulation);
+  const double start = kinetic_and_elastic_energy(*simulation);
   Collision found;
   while (simulation->time() < 3.6) {
     simulation->advance(3.6);
-    found.at_end = total_energy(*simulation) / start;
+    found.at_end = kinetic_and_elastic_energy(*simulation) / start;
     found.least = std::min(found.least, found.at_end);
     found.most = std::max(found.most, found.at_end);
   }
   const auto mass = by_id(simulation->particles(), "mass"), v = by_id(simulation->particles(), "velocity");
   const std::size_t half = mass.size() / 2;
-  double both = 0, first = 0, mass_of_first = 0;
-  for (std::size_t p = 0; p < mass.size(); ++p) {
-    both += mass[p] * v[p];
-    if (p < half) first += mass[p] * v[p], mass_of_first += mass[p];
-  }
-  found.momentum = std::abs(both) / (mass_of_first * 0.1);
+  double first = 0, mass_of_first = 0;
+  for (std::size_t p = 0; p < half; ++p) first += mass[p] * v[p], mass_of_first += mass[p];
+  found.momentum = std::abs(total_momentum(simulation->particles(), 0)) / (mass_of_first * 0.1);
   found.rebound = -first / (mass_of_first * 0.1);
   return found;
 }
@@ -109,11 +99,11 @@ double largest_energy(const Scheme& scheme, int points_per_cell, double offset, 
   if (scheme.affine())
     set_column(particles, "affine_velocity", 0,
                [&](const auto& x) { return -0.1 * wave_number * std::sin(wave_number * (x[0] - 1)); });
-  const double start = total_energy(*simulation), end = 20 * 5;
+  const double start = kinetic_and_elastic_energy(*simulation), end = 20 * 5;
   double most = 0;
   while (simulation->time() < end && most < 100) {
     simulation->advance(end);
-    most = std::max(most, total_energy(*simulation) / start);
+    most = std::max(most, kinetic_and_elastic_energy(*simulation) / start);
   }
   return most;
 }
@@ -179,12 +169,13 @@ Closing close_in(const Scheme& scheme) {
                     "m/s]}}",
                     speed),
                 .scheme = scheme});
-  const double volume = by_id(simulation->particles(), "volume").front(), start = total_energy(*simulation);
+  const double volume = by_id(simulation->particles(), "volume").front(),
+               start = kinetic_and_elastic_energy(*simulation);
   Closing found;
   while (simulation->time() < 0.08) {
     const StepInfo step = simulation->advance(0.08);
     found.shortened += step.limiter == "strain" || step.limiter == "advection" ? 1 : 0;
-    found.largest_energy = std::max(found.largest_energy, total_energy(*simulation) / start);
+    found.largest_energy = std::max(found.largest_energy, kinetic_and_elastic_energy(*simulation) / start);
     found.smallest_volume =
         std::min(found.smallest_volume, std::ranges::min(by_id(simulation->particles(), "volume")) / volume);
   }

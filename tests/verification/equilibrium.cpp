@@ -2,8 +2,7 @@
 /// solution where nothing yields; a column between walls, elastic and in the active state; Hill's thick cylinder; the
 /// stability number gamma H / c of a vertical cut, at most 3.83 (slip circles: W. Fellenius 1927).
 #include "core/parallel/parallel.h"
-#include "tests/verification/exact/thick_cylinder.h"
-#include "tests/verification/scene_fixture.h"
+#include "tests/verification/thick_cylinder.h"
 
 namespace sluice {
 namespace {
@@ -139,22 +138,9 @@ TEST(Equilibrium, RemembersTheElasticOverburden) {
 
 // ---- a thick cylinder ----
 
-const exact::ThickCylinder cylinder{1, 2, 100e3};
-
-/// A quarter of it. The pressure field is p up to 1.1 m, beyond the staircase of particles at the inner face.
 SceneText quarter(double cell, double pressure) {
-  SceneText scene{.grid = fmt::format("{{min: [0 m, 0 m], max: [2.2 m, 2.2 m], cell: {} m}}", cell),
-                  .material =
-                      "{model: tresca, density: 2000 kg/m3, youngs_modulus: 20 MPa, poisson_ratio: 0.3, "
-                      "strength: 100 kPa}",
-                  .bodies =
-                      "  - {material: soil, box: {min: [0 m, 0 m], max: [2 m, 2 m]}, difference: [{circle: "
-                      "{centre: [0 m, 0 m], radius: 2 m}}, {circle: {centre: [0 m, 0 m], radius: 1 m}}]}",
-                  .boundaries = "{left: roller, bottom: roller}",
-                  .initial_stress = stress_of(", increments: 5")};
-  scene.more = fmt::format(
-      "surface_loads: [{{pressure: {} Pa, region: {{circle: {{centre: [0 m, 0 m], radius: 1.1 m}}}}, fade: 0.6 m}}]\n",
-      pressure);
+  SceneText scene = quarter_cylinder(cell, "20 MPa", fmt::format("{} Pa", pressure));
+  scene.initial_stress = stress_of(", increments: 5");
   return scene;
 }
 

@@ -141,6 +141,10 @@ inline double energy(const Simulation& simulation, const std::string& name) {
   return NAN;
 }
 
+inline double kinetic_and_elastic_energy(const Simulation& simulation) {
+  return energy(simulation, "kinetic") + energy(simulation, "elastic");
+}
+
 inline double total_momentum(const Particles& particles, int component) {
   return dot(by_id(particles, "mass"), by_id(particles, "velocity", component));
 }

@@ -80,7 +80,7 @@ Vibration vibrate(const Scheme& scheme, int n, double h, double start = v0) {
     const auto v = by_id(particles, "velocity");
     double now = 0;
     for (std::size_t p = 0; p < mode.size(); ++p) now += mass[p] * v[p] * mode[p] / modal_mass;
-    recorder.add(dt, now, energy(*simulation, "kinetic") + energy(*simulation, "elastic"));
+    recorder.add(dt, now, kinetic_and_elastic_energy(*simulation));
   }
   return recorder.found();
 }
