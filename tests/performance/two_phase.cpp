@@ -12,7 +12,7 @@
 #include "core/case/case.h"
 #include "core/parallel/parallel.h"
 #include "core/simulation/simulation.h"
-#include "tests/verification/exact/terzaghi.h"
+#include "physics/exact/terzaghi.h"
 
 namespace {
 

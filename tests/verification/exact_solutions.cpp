@@ -12,17 +12,17 @@
 #include <utility>
 #include <vector>
 
-#include "tests/verification/exact/cryer.h"
-#include "tests/verification/exact/dam_break.h"
-#include "tests/verification/exact/dupuit.h"
-#include "tests/verification/exact/explicit_limits.h"
-#include "tests/verification/exact/harmonic_column.h"
-#include "tests/verification/exact/manufactured.h"
-#include "tests/verification/exact/saturated_soil.h"
-#include "tests/verification/exact/spurious_permeability.h"
-#include "tests/verification/exact/strip_load.h"
-#include "tests/verification/exact/telegraph_column.h"
-#include "tests/verification/exact/terzaghi.h"
+#include "physics/exact/cryer.h"
+#include "physics/exact/dam_break.h"
+#include "physics/exact/dupuit.h"
+#include "physics/exact/explicit_limits.h"
+#include "physics/exact/harmonic_column.h"
+#include "physics/exact/manufactured.h"
+#include "physics/exact/saturated_soil.h"
+#include "physics/exact/spurious_permeability.h"
+#include "physics/exact/strip_load.h"
+#include "physics/exact/telegraph_column.h"
+#include "physics/exact/terzaghi.h"
 
 namespace sluice::exact {
 namespace {

@@ -1,8 +1,8 @@
-/// Orders of convergence at large elastic deformation, with manufactured solutions (exact/manufactured.h). Expected:
-/// the error of the displacement is of second order in the cell size with lumped masses, as long as it is not that of
-/// the sums over particles, which does not go to zero with the cells but with the number of particles in a cell
+/// Orders of convergence at large elastic deformation, with manufactured solutions (physics/exact/manufactured.h).
+/// Expected: the error of the displacement is of second order in the cell size with lumped masses, as long as it is not
+/// that of the sums over particles, which does not go to zero with the cells but with the number of particles in a cell
 /// (Steffen, Kirby & Berzins 2008). Linear functions do not converge at all, for their gradients jump.
-#include "tests/verification/manufactured_physics.h"
+#include "physics/manufactured/manufactured.h"
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {
@@ -10,11 +10,9 @@ namespace {
 
 constexpr double vortex_amplitude = 0.2, full_amplitude = 1;
 
-const bool registered =
-    register_manufactured<2, exact::AxisAligned<2>>("axis_aligned") &&
-    register_manufactured<3, exact::AxisAligned<3>>("axis_aligned") &&
-    register_manufactured<2, exact::Vortex>("vortex", exact::Vortex{.amplitude = vortex_amplitude}) &&
-    register_manufactured<2, exact::Vortex>("full_vortex", exact::Vortex{.amplitude = full_amplitude});
+// The vortex as published, with A = 1, is in the program.
+const bool registered = physics_registry<2>().add("vortex", {"A gentle vortex.", {}},
+                                                  manufactured<2>(exact::Vortex{.amplitude = vortex_amplitude}));
 
 /// Largest |u - exact| over the particles.
 template <int Dim, class Solution>
@@ -70,7 +68,7 @@ double axis_aligned_error(const Scheme& scheme, int n, int per_axis) {
                               : "{left: roller, right: roller, bottom: roller, top: roller, front: roller, back: "
                                 "roller}",
        .scheme = scheme.with(fmt::format("time_step: {} s", dt)),
-       .physics = "axis_aligned"},
+       .physics = "manufactured_waves"},
       0.02);
 }
 
@@ -87,7 +85,7 @@ double vortex_error(const Scheme& scheme, int n, int per_axis, double amplitude 
                              per_axis * per_axis),
        .boundaries = "{left: fixed, right: fixed, bottom: fixed, top: fixed}",
        .scheme = scheme.with(fmt::format("time_step: {} s", 0.1 / n / 1.16)),
-       .physics = amplitude == full_amplitude ? "full_vortex" : "vortex"},
+       .physics = amplitude == full_amplitude ? "manufactured_vortex" : "vortex"},
       end);
 }
 

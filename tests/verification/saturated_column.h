@@ -5,7 +5,7 @@
 #include <functional>
 #include <limits>
 
-#include "tests/verification/exact/saturated_soil.h"
+#include "physics/exact/saturated_soil.h"
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {

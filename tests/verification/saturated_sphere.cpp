@@ -1,7 +1,7 @@
 /// Cryer's sphere in three dimensions: a saturated elastic ball, squeezed from all sides and drained at its surface.
 /// The pressure in its centre rises above the load before it falls (Mandel-Cryer effect).
 #include "core/parallel/parallel.h"
-#include "tests/verification/exact/cryer.h"
+#include "physics/exact/cryer.h"
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {

@@ -1,7 +1,7 @@
 /// A thick cylinder under inner pressure, a quarter of it in plane strain, for all tests that bring it to equilibrium.
 #pragma once
 
-#include "tests/verification/exact/thick_cylinder.h"
+#include "physics/exact/thick_cylinder.h"
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {

@@ -1,8 +1,8 @@
 /// Consolidation under a step load. Sources: Terzaghi (1923), and the telegraph column where inertia counts
-/// (tests/verification/exact). Errors are root mean squares over all particles, as shares of the load; strains are
+/// (physics/exact). Errors are root mean squares over all particles, as shares of the load; strains are
 /// below 1e-4, so that the exact solutions at small strain hold.
-#include "tests/verification/exact/telegraph_column.h"
-#include "tests/verification/exact/terzaghi.h"
+#include "physics/exact/telegraph_column.h"
+#include "physics/exact/terzaghi.h"
 #include "tests/verification/saturated_column.h"
 
 namespace sluice {

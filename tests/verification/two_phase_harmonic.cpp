@@ -11,7 +11,7 @@
 #include <map>
 #include <numbers>
 
-#include "tests/verification/exact/harmonic_column.h"
+#include "physics/exact/harmonic_column.h"
 #include "tests/verification/saturated_column.h"
 
 namespace sluice {

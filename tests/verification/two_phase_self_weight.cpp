@@ -1,6 +1,6 @@
 /// Saturated soil under its own weight: settling after it was deposited at once, and at rest. Sources: (EX.5), (EX.6),
 /// and hydrostatics.
-#include "tests/verification/exact/terzaghi.h"
+#include "physics/exact/terzaghi.h"
 #include "tests/verification/saturated_column.h"
 
 namespace sluice {

@@ -2,7 +2,7 @@
 /// The rate at which the longest mode of a drained column decays, over the exact one. Source: (EX.26)-(EX.28).
 #include <numbers>
 
-#include "tests/verification/exact/spurious_permeability.h"
+#include "physics/exact/spurious_permeability.h"
 #include "tests/verification/saturated_column.h"
 
 namespace sluice {

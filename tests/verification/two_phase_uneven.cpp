@@ -5,7 +5,7 @@
 /// particles.
 #include <random>
 
-#include "tests/verification/exact/terzaghi.h"
+#include "physics/exact/terzaghi.h"
 #include "tests/verification/saturated_column.h"
 
 namespace sluice {

@@ -19,7 +19,7 @@
 #include <functional>
 #include <numbers>
 
-#include "tests/verification/exact/saturated_soil.h"
+#include "physics/exact/saturated_soil.h"
 
 namespace sluice::exact {
 

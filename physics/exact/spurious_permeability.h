@@ -10,7 +10,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "tests/verification/exact/saturated_soil.h"
+#include "physics/exact/saturated_soil.h"
 
 namespace sluice::exact {
 

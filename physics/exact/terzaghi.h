@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/verification/exact/saturated_soil.h"
+#include "physics/exact/saturated_soil.h"
 
 namespace sluice::exact {
 

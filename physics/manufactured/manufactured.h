@@ -1,5 +1,6 @@
 /// A physics for manufactured solutions: neo-Hookean material under a body force that is given at every place and time.
-/// It exists in the tests only and is made of the same stages as the others, stresses updated last.
+/// It measures mappings and transfers and is made of the same stages as the others, stresses updated last. Materials of
+/// the case give nothing but their name.
 #pragma once
 
 #include <Eigen/Dense>
@@ -9,7 +10,7 @@
 #include "core/simulation/guard.h"
 #include "core/simulation/physics_module.h"
 #include "core/simulation/velocity_filter.h"
-#include "tests/verification/exact/manufactured.h"
+#include "physics/exact/manufactured.h"
 
 namespace sluice {
 
@@ -165,10 +166,8 @@ class ManufacturedPhysics final : public PhysicsModule<Dim> {
 };
 
 template <int Dim, class Solution>
-bool register_manufactured(const std::string& name, const Solution& solution = {}) {
-  return physics_registry<Dim>().add(name, {"A manufactured solution.", {}}, [solution](const Case&) {
-    return std::make_unique<ManufacturedPhysics<Dim, Solution>>(solution);
-  });
+auto manufactured(const Solution& solution) {
+  return [solution](const Case&) { return std::make_unique<ManufacturedPhysics<Dim, Solution>>(solution); };
 }
 
 }  // namespace sluice

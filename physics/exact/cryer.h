@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/verification/exact/saturated_soil.h"
+#include "physics/exact/saturated_soil.h"
 
 namespace sluice::exact {
 

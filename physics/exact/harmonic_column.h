@@ -19,7 +19,7 @@
 #include <complex>
 #include <vector>
 
-#include "tests/verification/exact/saturated_soil.h"
+#include "physics/exact/saturated_soil.h"
 
 namespace sluice::exact {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/verification/exact/saturated_soil.h"
+#include "physics/exact/saturated_soil.h"
 
 namespace sluice::exact {
 
