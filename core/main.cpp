@@ -14,6 +14,7 @@
 #include "core/case/case_tree.h"
 #include "core/case/reference.h"
 #include "core/case/registry.h"
+#include "core/chart/study.h"
 #include "core/command.h"
 #include "core/output/pictures.h"
 #include "core/parallel/parallel.h"
@@ -97,7 +98,10 @@ int list(const Arguments& arguments) {
 }
 
 int schema(const Arguments& arguments) {
-  std::cout << (arguments.json ? case_json_schema() : case_reference_markdown());
+  const std::string study = "What `sluice chart` reads: [charts](charts/README.md). Errors are listed under *errors*.";
+  std::cout << (arguments.json
+                    ? case_json_schema()
+                    : case_reference_markdown() + file_reference_markdown("The study", study, chart::study_docs()));
   return exit_code::done;
 }
 

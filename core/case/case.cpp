@@ -3,6 +3,7 @@
 #include "core/case/case_schema.h"
 #include "core/case/case_tree.h"
 #include "core/case/consistency.h"
+#include "core/case/presets.h"
 
 namespace sluice {
 
@@ -13,6 +14,7 @@ Case case_of(Node tree, const std::string& file, const std::vector<Override>& ov
   Node source = extended(std::move(tree), file);
   apply_overrides(overrides, source, problems);
   Node whole = source;
+  apply_preset(whole);
   resolve_files(whole, file, problems);
   Case definition = case_schema().read(whole, {"extends"}, problems);
   definition.file = file;

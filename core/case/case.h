@@ -68,6 +68,7 @@ struct ChangeCase {
 
 /// How the equations are discretised. See docs/theory.md.
 struct SchemeCase {
+  std::string preset = "balanced";
   std::string shape = "quadratic_bspline";
   std::string transfer = "apic";
   double flip_fraction = 1;  ///< share of FLIP in the FLIP/PIC blend; 1 is pure FLIP, 0 is pure PIC

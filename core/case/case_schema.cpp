@@ -325,6 +325,9 @@ Schema<SchemeCase> scheme_schema() {
   using S = SchemeCase;
   const S defaults;
   return Schema<S>("scheme")
+      .registered("preset", &S::preset, "presets",
+                  "Values for the keys below that are not given. `balanced` is what stands below as default.",
+                  defaults.preset)
       .registered("shape", &S::shape, "shapes", "Shape functions.", defaults.shape)
       .registered("transfer", &S::transfer, "transfers", "How velocity travels between particles and nodes.",
                   defaults.transfer)

@@ -81,6 +81,11 @@ std::string catalogue_text(const Catalogue& catalogue) {
 
 }  // namespace
 
+std::string file_reference_markdown(const std::string& title, const std::string& sentence,
+                                    const std::vector<FieldDoc>& docs) {
+  return fmt::format("\n## {}\n\n{}\n\n", title, sentence) + table(docs) + tables_inside(docs, "");
+}
+
 std::string case_reference_markdown() {
   const auto docs = case_schema().docs();
   std::string text = introduction;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <fstream>
 #include <optional>
 
@@ -69,6 +70,38 @@ void make_folder(const fs::path& folder) {
     throw std::runtime_error(fmt::format("the output folder {} cannot be made: {}", folder.string(), error.message()));
 }
 
+/// CPU time of this process, all threads [s].
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Adds the time until the end of the scope to what output has taken, on the clock and of the CPU.
+class OutputTime {
+ public:
+  OutputTime(double& wall, double& cpu) : wall_(wall), cpu_(cpu) {}
+  ~OutputTime() {
+    wall_ += seconds_since(start_);
+    cpu_ += cpu_seconds() - cpu_start_;
+  }
+  OutputTime(const OutputTime&) = delete;
+  OutputTime& operator=(const OutputTime&) = delete;
+
+ private:
+  double &wall_, &cpu_;
+  SteadyClock::time_point start_ = SteadyClock::now();
+  double cpu_start_ = cpu_seconds();
+};
+
+/// Most bytes that this process has had in memory, as Linux counts them; 0 where it does not say.
+double peak_memory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (double kilobytes = 0; word == "VmHWM:" && status >> kilobytes) return 1024 * kilobytes;
+  return 0;
+}
+
 std::string text_of(const std::string& file) {
   std::ifstream in(file);
   return {std::istreambuf_iterator<char>(in), {}};
@@ -108,6 +141,7 @@ class Run {
   }
 
   int execute() {
+    loop_cpu_start_ = cpu_seconds();
     Progress progress(options_.quiet, simulation_->time(), case_.end_time);
     Schedule frames(case_.output.every, simulation_->time()), rows(case_.output.history_every, simulation_->time());
     if (!options_.resume) {
@@ -166,6 +200,7 @@ class Run {
     simulation_->restore(checkpoint.archive);
     earlier_seconds_ = checkpoint.archive.reals.at("wall_seconds").at(0);
     earlier_particle_steps_ = checkpoint.archive.reals.at("particle_steps").at(0);
+    earlier_cpu_seconds_ = checkpoint.archive.reals.at("step_cpu_seconds").at(0);
     if (!options_.quiet)
       fmt::print("resuming at time {:g} s, step {}, from {}\n", checkpoint.time, checkpoint.step,
                  checkpoint.file.string());
@@ -223,6 +258,7 @@ class Run {
   }
 
   void write_row(const StepInfo& info) {
+    const OutputTime clock(output_seconds_, output_cpu_seconds_);
     const double time = simulation_->time();
     std::vector<CsvTable::Cell> row = {simulation_->steps(), time, info.dt, info.limiter, info.speed};
     for (const auto& energy : simulation_->energies()) row.emplace_back(energy.second);
@@ -262,21 +298,25 @@ class Run {
   }
 
   void write_frame() {
-    const auto start = SteadyClock::now();
+    const OutputTime clock(output_seconds_, output_cpu_seconds_);
     results_->add_frame(simulation_->particles(), simulation_->time(), simulation_->steps());
-    output_seconds_ += seconds_since(start);
   }
 
   void checkpoint() {
-    const auto start = SteadyClock::now();
+    const OutputTime clock(output_seconds_, output_cpu_seconds_);
     Archive archive;
     simulation_->store(archive);
     archive.texts["case"] = identity();
     archive.reals["wall_seconds"] = {earlier_seconds_ + seconds_since(start_)};
+    archive.reals["step_cpu_seconds"] = {step_cpu_seconds()};
     archive.reals["particle_steps"] = {earlier_particle_steps_ + static_cast<double>(particle_steps_)};
     checkpoints_.save(std::move(archive), simulation_->time(), simulation_->steps());
     last_checkpoint_ = SteadyClock::now();
-    output_seconds_ += seconds_since(start);
+  }
+
+  /// CPU time of the steps, without the start and without output.
+  double step_cpu_seconds() const {
+    return earlier_cpu_seconds_ + cpu_seconds() - loop_cpu_start_ - output_cpu_seconds_;
   }
 
   int stop(Progress& progress) {
@@ -312,6 +352,9 @@ class Run {
     s.stage_seconds["output"] = output_seconds_;
     for (std::size_t i = 0; i < observations_.size(); ++i)
       s.observations[case_.observe[i].name] = observations_[i]->evaluate(simulation_->particles());
+    s.extra["particle_steps"] = earlier_particle_steps_ + static_cast<double>(particle_steps_);
+    s.extra["step_cpu_seconds"] = step_cpu_seconds();
+    s.extra["peak_memory_bytes"] = peak_memory();
     s.extra["removed_particles"] = static_cast<double>(simulation_->removed_particles());
     for (const auto& [name, value] : simulation_->totals()) s.extra[name] = value;
     s.extra["particle_bytes"] = static_cast<double>(simulation_->memory());
@@ -350,7 +393,8 @@ class Run {
   std::optional<CsvTable> history_, observed_;
   std::vector<std::unique_ptr<Observation>> observations_;
   std::size_t particle_steps_ = 0;
-  double earlier_seconds_ = 0, earlier_particle_steps_ = 0, output_seconds_ = 0;
+  double earlier_seconds_ = 0, earlier_particle_steps_ = 0, earlier_cpu_seconds_ = 0;
+  double output_seconds_ = 0, output_cpu_seconds_ = 0, loop_cpu_start_ = 0;
   Summary summary_;
 };
 

@@ -1,0 +1,112 @@
+#include "core/chart/ledger.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/output/file_aside.h"
+
+namespace sluice::chart {
+
+namespace {
+
+constexpr const char* header =
+    "identity,variant,repetition,version,error,failure,message,cpu_s,process_cpu_s,peak_memory_bytes,steps,particles,"
+    "particle_steps,"
+    "factorizations,iterations\n";
+constexpr std::size_t columns = 15;
+
+std::string quoted(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string safe;
+  for (const char c : text) safe += c == '"' ? "\"\"" : std::string(1, c);
+  return "\"" + safe + "\"";
+}
+
+std::string row_of(const Entry& e) {
+  const RunReport& r = e.report;
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", e.identity, quoted(e.variant), e.repetition,
+                     quoted(e.version), e.error, quoted(r.failure), quoted(r.message), r.cpu_seconds, r.process_cpu,
+                     r.peak_memory, r.steps, r.particles, r.particle_steps, r.factorizations, r.iterations);
+}
+
+Entry entry_of(const std::vector<std::string>& cells) {
+  const auto number = [&](std::size_t i) { return std::strtod(cells[i].c_str(), nullptr); };
+  Entry e;
+  e.identity = cells[0];
+  e.variant = cells[1];
+  e.repetition = static_cast<int>(number(2));
+  e.version = cells[3];
+  e.error = number(4);
+  e.report.failure = cells[5];
+  e.report.message = cells[6];
+  e.report.cpu_seconds = number(7);
+  e.report.process_cpu = number(8);
+  e.report.peak_memory = number(9);
+  e.report.steps = number(10);
+  e.report.particles = number(11);
+  e.report.particle_steps = number(12);
+  e.report.factorizations = number(13);
+  e.report.iterations = number(14);
+  return e;
+}
+
+}  // namespace
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool inside = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && inside && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back() += line[++i];
+    else if (c == '"')
+      inside = !inside;
+    else if (c == ',' && !inside)
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  }
+  return cells;
+}
+
+Ledger::Ledger(std::filesystem::path file, bool start_anew) : file_(std::move(file)) {
+  if (!start_anew && std::filesystem::exists(file_)) read();
+  std::string text = header;
+  for (const Entry& entry : entries_) text += row_of(entry);
+  replace_text_file(file_, text);
+  out_.open(file_, std::ios::app);
+  if (!out_) throw std::runtime_error(fmt::format("{} cannot be written", file_.string()));
+}
+
+void Ledger::read() {
+  std::ifstream in(file_);
+  std::stringstream all;
+  all << in.rdbuf();
+  std::string text = all.str();
+  if (!text.starts_with(header))
+    throw std::runtime_error(
+        fmt::format("{} is no table of runs of this version; `--force` begins anew", file_.string()));
+  text.erase(0, std::string(header).size());
+  for (std::size_t end; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1)) {
+    const auto cells = cells_of(text.substr(0, end));
+    if (cells.size() == columns) entries_.push_back(entry_of(cells));
+  }
+}
+
+void Ledger::append(const Entry& entry) {
+  out_ << row_of(entry) << std::flush;
+  if (!out_) throw std::runtime_error(fmt::format("{} cannot be written", file_.string()));
+  entries_.push_back(entry);
+}
+
+const Entry* Ledger::find(const std::string& identity, int repetition) const {
+  const auto found = std::ranges::find_if(
+      entries_, [&](const Entry& e) { return e.identity == identity && e.repetition == repetition; });
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+}  // namespace sluice::chart

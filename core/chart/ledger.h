@@ -1,0 +1,42 @@
+/// Ledger: every run of a study as a row of runs.csv, written when the run ends. What stands there is not run again.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/chart/measured_run.h"
+
+namespace sluice::chart {
+
+/// One run of one variant.
+struct Entry {
+  std::string identity;  ///< of the case with all settings, the error and the limits
+  std::string variant;
+  int repetition = 1;
+  std::string version;  ///< of the program
+  double error = 0;     ///< NaN where there is none
+  RunReport report;
+};
+
+class Ledger {
+ public:
+  /// Reads what is there. A last row that was cut is dropped. Throws std::runtime_error for a file of another kind.
+  Ledger(std::filesystem::path file, bool start_anew);
+  void append(const Entry& entry);
+  const std::vector<Entry>& entries() const { return entries_; }
+  const Entry* find(const std::string& identity, int repetition) const;
+
+ private:
+  void read();
+  std::filesystem::path file_;
+  std::vector<Entry> entries_;
+  std::ofstream out_;
+};
+
+/// A line of a table of comma-separated values, quotes resolved.
+std::vector<std::string> cells_of(const std::string& line);
+
+}  // namespace sluice::chart
