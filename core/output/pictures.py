@@ -6,7 +6,7 @@
 
 Reads RESULTS_DIR/results.h5 (of a finished run, or of one under way), history.csv and observations.csv; writes
 RESULTS_DIR/pictures/FIELD.png (one panel a time), history.png, observations.png and FIELD.gif.
-Needs python3-h5py, python3-numpy, python3-matplotlib and python3-pil. Made to be adapted: the layout of results.h5 is
+Needs python3-h5py, python3-numpy, python3-matplotlib, python3-pil and python3-yaml. Made to be adapted: the layout of results.h5 is
 read in `Results`, a field is turned into an image in `rasterise`, and each figure is drawn by one function.
 """
 import argparse
@@ -21,6 +21,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+import yaml
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.patches import Patch
 from PIL import Image, ImageDraw, ImageFont
@@ -49,6 +50,8 @@ class Results:
         self.low, self.high, self.cell = (about.attrs[name] for name in ("grid_min", "grid_max", "grid_cell"))
         self.materials = [name.decode() for name in about["material_names"][:]]
         self.title = text(about.attrs["title"])
+        resolved = yaml.safe_load(text(about["resolved_case"][:][0]))
+        self.obstacles = list((resolved.get("obstacles") or {}).values())
 
     def rows(self, frame):
         return slice(self.first[frame], self.first[frame] + self.count[frame])
@@ -226,6 +229,70 @@ def draw_outline(axes, view, start):
     axes.contour(x, y, np.pad(occupied.astype(float), 1), levels=[0.5], colors="0.25", linewidths=0.6)
 
 
+def number(quantity):
+    """Of a quantity in the resolved case, which is in SI: "0.5 m"."""
+    return float(str(quantity).split()[0])
+
+
+def moved_by(table, time):
+    """Distance at a time of what has this velocity, a value or points in time."""
+    if not isinstance(table, list):
+        return number(table) * time
+    at = np.array([[number(t), number(v)] for t, v in table])
+    times = np.unique(np.r_[0, at[(at[:, 0] > 0) & (at[:, 0] < time), 0], time])
+    return np.trapz(np.interp(times, at[:, 0], at[:, 1]), times)
+
+
+def inside_polygon(x, y, points):
+    inside = np.zeros(x.shape, dtype=bool)
+    for (x0, y0), (x1, y1) in zip(points, points[1:] + points[:1]):
+        crosses = (y0 <= y) != (y1 <= y)
+        inside ^= crosses & (x < x0 + (y - y0) * (x1 - x0) / ((y1 - y0) or 1))
+    return inside
+
+
+def inside_region(x, y, region):
+    """Which points of the plane lie in a region of the resolved case: in all of its shapes."""
+    inside = np.ones(x.shape, dtype=bool)
+    for shape, about in region.items():
+        if shape == "box":
+            (x0, y0), (x1, y1) = (map(number, about[end]) for end in ("min", "max"))
+            inside &= (x >= x0) & (x < x1) & (y >= y0) & (y < y1)
+        elif shape == "half_space":
+            (x0, y0), (a, b) = map(number, about["point"]), map(number, about["normal"])
+            inside &= a * (x - x0) + b * (y - y0) <= 0
+        elif shape in ("circle", "sphere"):
+            x0, y0 = map(number, about["centre"])
+            inside &= np.hypot(x - x0, y - y0) <= number(about["radius"])
+        elif shape == "polygon":
+            inside &= inside_polygon(x, y, [tuple(map(number, point)) for point in about])
+        elif shape == "layer":
+            inside &= (y >= number(about.get("bottom", "-inf"))) & (y < number(about.get("top", "inf")))
+        elif shape == "union":
+            inside &= np.any([inside_region(x, y, part) for part in about], axis=0)
+        elif shape == "intersection":
+            inside &= np.all([inside_region(x, y, part) for part in about], axis=0)
+        elif shape == "difference":
+            inside &= inside_region(x, y, about[0]) & ~np.any([inside_region(x, y, part) for part in about[1:]], axis=0)
+    return inside
+
+
+def draw_obstacles(results, axes, view, frame):
+    """Grey where an obstacle is, in plane strain."""
+    if results.dimension != 2:
+        return
+    fine = 4  # points in a pixel along each axis
+    x = view.low[0] + (np.arange(view.shape[0] * fine) + 0.5) * view.pixel[0] / fine
+    y = view.low[1] + (np.arange(view.shape[1] * fine) + 0.5) * view.pixel[1] / fine
+    x, y = np.meshgrid(x, y)
+    for obstacle in results.obstacles:
+        velocity = obstacle.get("velocity") or [0, 0]
+        by = [moved_by(table, results.times[frame]) for table in velocity]
+        inside = inside_region(x - by[0], y - by[1], obstacle)
+        axes.imshow(np.ma.masked_where(~inside, inside), extent=view.extent, origin="lower", cmap=ListedColormap(["0.7"]),
+                    interpolation="nearest", zorder=0.5)
+
+
 def shown(results, view, name, frame):
     return rasterise(view, results.positions(frame), results.values(name, frame), name == "material")
 
@@ -273,6 +340,7 @@ def draw_field(results, view, name, frames, path):
         axis.imshow(image, extent=view.extent, origin="lower", cmap=scale.map, norm=scale.norm, interpolation="nearest")
         if name == "pore_pressure":
             draw_dry(results, axis, view, frame)
+        draw_obstacles(results, axis, view, frame)
         draw_outline(axis, view, start)
         axis.axhline(view.floor, color="black", linewidth=1.2)
         axis.set(aspect="equal", xlim=(view.low[0], view.high[0]), ylim=(view.low[1] - view.pixel[1], view.high[1]))
