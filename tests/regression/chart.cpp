@@ -1,5 +1,6 @@
 /// `sluice chart` as a user runs it: the shipped studies, tables and figures, failures as results, an interrupted
 /// study.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -159,6 +160,53 @@ TEST_F(Chart, shipped_studies_are_sound) {
     }
   }
   EXPECT_GE(count, 11u);
+}
+
+namespace {
+
+/// A run of a shipped case, and the error that verification lets it have.
+struct Known {
+  std::string measure, file, settings;
+  double most;
+};
+
+}  // namespace
+
+// The error measures see through the files of a run what the tests of verification see: displacements of a bar and of
+// standing waves (second order: 16 cells in a wavelength or more), the stress in a heavy column, pore pressures of
+// columns and of the sphere. The bounds are those of the tests, widened where the grid is coarser.
+TEST_F(Chart, measures_agree_with_verification) {
+  const Known all[] = {
+      {"vibrating_bar", "vibrating_bar.yaml",
+       "gravity: [4e-5 m/s2, 0], end_time: 20 s, output.every: 2 s, output.pictures: [], output.picture_times: []",
+       2e-3},
+      {"manufactured", "studies/bases/manufactured_waves.yaml", "bodies.0.particles_per_cell: 16", 0.02},
+      {"heavy_column", "studies/bases/heavy_column.yaml",
+       "scheme.shape: cubic_bspline, bodies.0.particles_per_cell: 36", 3e-4},
+      {"terzaghi", "studies/bases/saturated_column.yaml", "end_time: 0.2 s", 0.01},
+      {"telegraph_column", "studies/bases/saturated_column.yaml", "grid.cell: 0.0125 m", 3e-3},
+      {"undrained_column", "studies/bases/saturated_column.yaml",
+       "materials.sand.water.permeability: 1e-8 m/s, end_time: 20 ms", 0.12},
+      {"cryer", "studies/bases/saturated_sphere.yaml", "end_time: 80 ms", 0.05},
+  };
+  const auto error_of = [&](const Known& known) {
+    scratch_.write("study.yaml", fmt::format("schema: 1\ntitle: One\ncase: {}/{}\naxes: {{only: {{one: {{{}}}}}}}\n"
+                                             "error: {{measure: {}}}\nrepetitions: 1\n",
+                                             SLUICE_CASES_DIR, known.file, known.settings, known.measure));
+    const Ending ending = chart({"--force", "--no-picture"});
+    EXPECT_EQ(ending.code, exit_code::done) << ending.err;
+    return last_number(scratch_ / "out/chart.csv", "error");
+  };
+  for (const Known& known : all) {
+    SCOPED_TRACE(known.measure);
+    const double error = error_of(known);
+    EXPECT_LT(error, known.most);
+    EXPECT_GT(error, 1e-5) << "nothing was measured";
+  }
+  // The control: the column drains at its base, too.
+  EXPECT_GT(error_of({"terzaghi", "studies/bases/saturated_column.yaml",
+                      "end_time: 0.2 s, water.faces: {bottom: {pressure: 0 Pa}}", 1}),
+            0.1);
 }
 
 }  // namespace sluice::test
