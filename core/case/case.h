@@ -99,8 +99,9 @@ struct ObservationCase {
 };
 
 struct OutputCase {
-  double every = 0;          ///< [s]; 0: only the first and the last state
-  double history_every = 0;  ///< [s] between rows of history.csv and observations.csv; 0: every step
+  double every = 0;  ///< [s]; 0: only the first and the last state
+  /// [s] between rows of history.csv and observations.csv; 0: every step; absent: a thousandth of the end time.
+  std::optional<double> history_every;
   std::vector<std::string> pictures;
   std::vector<double> picture_times;  ///< [s]; empty: four evenly spaced
   double checkpoint_every = 30;       ///< wall-clock seconds between checkpoints

@@ -404,8 +404,10 @@ Schema<OutputCase> output_schema() {
   return Schema<O>("output")
       .quantity("every", &O::every, unit::time, at_least(0),
                 "Time between the states in results.h5; 0: only the first and the last.", defaults.every)
-      .quantity("history_every", &O::history_every, unit::time, at_least(0),
-                "Time between rows of history.csv and observations.csv; 0: every step.", defaults.history_every)
+      .quantity(
+          "history_every", &O::history_every, unit::time, at_least(0),
+          "Time between rows of history.csv and observations.csv; 0: every step, which can take longer than the steps.",
+          Absent{"a thousandth of `end_time`"})
       .words("pictures", &O::pictures, "Columns of which pictures are drawn.")
       .quantities("picture_times", &O::picture_times, unit::time, at_least(0), {}, "Times of the rows of the pictures.",
                   Absent{"four, evenly spaced"})

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 #include <type_traits>
+#include <vector>
 
 namespace sluice {
 
@@ -68,6 +69,21 @@ template <class Body>
 void parallel_shares(std::size_t count, std::size_t size, const Body& body) {
   parallel_for((count + size - 1) / size,
                [&](std::size_t share) { body(share * size, std::min(count, (share + 1) * size), share); });
+}
+
+/// Sum of term(item) over the items 0 … count-1, the same bits on any number of threads.
+template <class Term>
+double parallel_sum(std::size_t count, const Term& term) {
+  constexpr std::size_t size = 1024;
+  std::vector<double> sums((count + size - 1) / size);
+  parallel_shares(count, size, [&](std::size_t begin, std::size_t end, std::size_t share) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += term(i);
+    sums[share] = sum;
+  });
+  double total = 0;
+  for (const double sum : sums) total += sum;
+  return total;
 }
 
 }  // namespace sluice

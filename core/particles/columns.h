@@ -4,6 +4,7 @@
 /// allocation, sorting, checkpoints, output and the manual: no field can be forgotten.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -48,6 +49,13 @@ class Columns {
 
   double* data(ColumnId id, int component = 0);
   const double* data(ColumnId id, int component = 0) const;
+  /// All components of a column that has N of them.
+  template <std::size_t N>
+  std::array<const double*, N> pointers(ColumnId id) const {
+    std::array<const double*, N> all;
+    for (std::size_t c = 0; c < N; ++c) all[c] = data(id, static_cast<int>(c));
+    return all;
+  }
   std::span<double> values(ColumnId id, int component = 0) { return {data(id, component), size_}; }
   std::span<const double> values(ColumnId id, int component = 0) const { return {data(id, component), size_}; }
 

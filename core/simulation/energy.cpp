@@ -1,29 +1,31 @@
 #include "core/simulation/energy.h"
 
+#include "core/parallel/parallel.h"
+
 namespace sluice {
 
 template <int Dim>
 double kinetic_energy(const Scene<Dim>& scene) {
   const Columns& columns = scene.particles.columns;
   const double* mass = columns.data(scene.particles.mass);
-  double sum = 0;
-  for (int a = 0; a < Dim; ++a) {
-    const double* v = columns.data(scene.particles.velocity, a);
-    for (std::size_t p = 0; p < scene.particles.size(); ++p) sum += 0.5 * mass[p] * v[p] * v[p];
-  }
-  return sum;
+  const auto v = columns.pointers<Dim>(scene.particles.velocity);
+  return parallel_sum(scene.particles.size(), [&](std::size_t p) {
+    double squares = 0;
+    for (std::size_t a = 0; a < Dim; ++a) squares += v[a][p] * v[a][p];
+    return 0.5 * mass[p] * squares;
+  });
 }
 
 template <int Dim>
 double potential_energy(const Scene<Dim>& scene) {
   const Columns& columns = scene.particles.columns;
   const double* mass = columns.data(scene.particles.mass);
-  double sum = 0;
-  for (int a = 0; a < Dim; ++a) {
-    const double* x = columns.data(scene.particles.position, a);
-    for (std::size_t p = 0; p < scene.particles.size(); ++p) sum -= mass[p] * scene.gravity[a] * x[p];
-  }
-  return sum;
+  const auto x = columns.pointers<Dim>(scene.particles.position);
+  return parallel_sum(scene.particles.size(), [&](std::size_t p) {
+    double height = 0;
+    for (std::size_t a = 0; a < Dim; ++a) height -= scene.gravity[a] * x[a][p];
+    return mass[p] * height;
+  });
 }
 
 template double kinetic_energy<2>(const Scene<2>&);

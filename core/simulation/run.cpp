@@ -143,7 +143,8 @@ class Run {
   int execute() {
     loop_cpu_start_ = cpu_seconds();
     Progress progress(options_.quiet, simulation_->time(), case_.end_time);
-    Schedule frames(case_.output.every, simulation_->time()), rows(case_.output.history_every, simulation_->time());
+    const double row_interval = case_.output.history_every.value_or(case_.end_time / 1000);
+    Schedule frames(case_.output.every, simulation_->time()), rows(row_interval, simulation_->time());
     if (!options_.resume) {
       write_row({0, "", simulation_->largest_speed()});
       results_->add_frame(simulation_->particles(), simulation_->time(), simulation_->steps());
@@ -155,7 +156,7 @@ class Run {
         const StepInfo info = advance(until);
         particle_steps_ += simulation_->particles().size();
         const bool at_end = simulation_->time() >= case_.end_time;
-        if (case_.output.history_every <= 0 || rows.due(simulation_->time()) || at_end) write_row(info);
+        if (row_interval <= 0 || rows.due(simulation_->time()) || at_end) write_row(info);
         rows.pass(simulation_->time());
         if (frames.due(simulation_->time()) || at_end) write_frame();
         frames.pass(simulation_->time());

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/parallel/multitarget.h"
+#include "core/parallel/parallel.h"
 #include "physics/materials/hencky.h"
 
 namespace sluice {
@@ -197,18 +198,17 @@ double Materials<Dim>::stored_energy(const Particles& particles) const {
   const Columns& columns = particles.columns;
   const double* volume = columns.data(particles.volume);
   const double* initial = hencky_ ? columns.data(initial_volume_) : nullptr;
-  double sum = 0;
-  for (std::size_t p = 0; p < particles.size(); ++p) {
+  const auto sigma = columns.pointers<symmetric_components<Dim>>(particles.stress);
+  return parallel_sum(particles.size(), [&](std::size_t p) {
     std::array<double, symmetric_components<Dim>> stress;
-    for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = columns.data(particles.stress, static_cast<int>(c))[p];
+    for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = sigma[c][p];
     double counted = volume[p];
     if (initial != nullptr && initial[p] > 0) {  // tau, per initial volume
       for (double& component : stress) component *= volume[p] / initial[p];
       counted = initial[p];
     }
-    sum += counted * materials_[static_cast<std::size_t>(particles.material[p])]->stored_energy(stress);
-  }
-  return sum;
+    return counted * materials_[static_cast<std::size_t>(particles.material[p])]->stored_energy(stress);
+  });
 }
 
 template <int Dim>
