@@ -314,6 +314,9 @@ class Run {
       s.observations[case_.observe[i].name] = observations_[i]->evaluate(simulation_->particles());
     s.extra["removed_particles"] = static_cast<double>(simulation_->removed_particles());
     for (const auto& [name, value] : simulation_->totals()) s.extra[name] = value;
+    if (const Node* const verdict = case_.advice.find("verdict"))
+      for (std::size_t i = 0; i < verdict->items.size(); ++i)
+        s.verdict.emplace_back(verdict->keys[i].first, verdict->items[i].scalar);
     s.extra["particle_bytes"] = static_cast<double>(simulation_->memory());
     write_summary(options_.folder / "summary.json", s);
     summary_ = s;
