@@ -88,14 +88,15 @@ void add_advice(SoilNumbers& s, const PoresCase& pores, const SceneNumbers& scen
 void read_soils(SceneNumbers& scene, const Case& definition) {
   const bool with_water = definition.physics != "total_stress";
   Case readable = plain(definition);
-  readable.water.set("formulation", Node::text("v-w-p"));  // which takes every permeability
+  WaterCase any = scene.water;
+  any.formulation = Formulation::v_w_p;  // which takes every permeability
   std::vector<SoilNumbers> all;
   std::vector<bool> liquid;
   for (const auto& [name, section] : definition.materials) {
     all.push_back(soil_of(name, section));
     liquid.push_back(all.back().liquid);
   }
-  const auto pores = with_water ? read_pore_spaces(readable, scene.water, liquid) : std::vector<PoreSpace>();
+  const auto pores = with_water ? read_pore_spaces(readable, any, liquid) : std::vector<PoreSpace>();
   for (std::size_t m = 0; m < all.size(); ++m) {
     const auto& [name, section] = definition.materials[m];
     if (with_water) add_water(all[m], pores[m], section, scene);
@@ -318,8 +319,7 @@ SceneNumbers numbers_of(const Case& definition) {
   SceneNumbers scene;
   scene.asked = read_advice(definition);
   if (definition.physics != "total_stress") {
-    Case readable = plain(definition);
-    scene.water = read_water(readable);
+    scene.water = read_water(plain(definition));
   }
   const SceneLattice lattice(definition);
   scene.height = lattice.extent(definition.dimension() - 1);
