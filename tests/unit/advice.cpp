@@ -340,7 +340,7 @@ TEST(Advice, RefusesWhatIsWrong) {
   EXPECT_EQ(with("materials: {soil: {permeability: 1 mm/s}}"),
             "c.yaml:10:28: advice.materials.soil: the physics two_phase reads `water` of the material; leave this out");
   EXPECT_EQ(with("materials: {sol: {permeability: 1 mm/s}}", "total_stress"),
-            "c.yaml:10:28: advice.materials: unknown material 'sol'; allowed: soil; did you mean 'soil'?");
+            "c.yaml:10:27: advice.materials: unknown material 'sol'; allowed: soil; did you mean 'soil'?");
   EXPECT_EQ(message_of(automatic(layer(1e-4, "", "water: {formulation: u-p}\n"))),
             "c.yaml:11:22: water.formulation: `physics: auto` chooses it; leave it out");
   Layered undrained = layer(1e-4, "");

@@ -106,5 +106,33 @@ TEST(Advice, IsTheCheapestModelWithinTheTolerance) {
   EXPECT_LE(safe, 1);
 }
 
+/// What the advice is at a point, from the closed forms alone: the letter of the choice, as below.
+char advice_at(const Point& point) {
+  const Oscillation oscillation(point, "v-w-p", 10);
+  std::size_t best = 3;
+  double least = steps_in_a_period(oscillation, 3) * cost_of_step[3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto off = exact::model_error(model[c], oscillation.groups, 60);
+    const double cost = steps_in_a_period(oscillation, c) * cost_of_step[c];
+    if (std::max(off.displacement, off.pressure) < tolerance && cost < least) best = c, least = cost;
+  }
+  return "DUPF"[best];
+}
+
+// The map behind the points: recorded for the figure. Its corners are what they must be.
+TEST(Advice, MapOfThePlane) {
+  const auto at = [](double lg_1, double lg_2) { return advice_at({lg_1, lg_2, 1}); };
+  EXPECT_EQ(at(-5, -4), 'U');
+  EXPECT_EQ(at(4, -4), 'D');
+  EXPECT_EQ(at(0, -3), 'P');
+  EXPECT_EQ(at(3, 1), 'F');
+  constexpr double step = 0.1;
+  for (int row = 0; row <= 62; ++row) {
+    std::string letters;
+    for (int column = 0; column <= 95; ++column) letters += at(-5 + step * column, -5 + step * row);
+    RecordProperty(fmt::format("row_{:02}", row), letters);
+  }
+}
+
 }  // namespace
 }  // namespace sluice::harmonic
