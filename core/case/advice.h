@@ -22,6 +22,8 @@ struct Advisor {
   /// Called with every case that has been read and checked: reads the keys that are the advisor's own, throws CaseError
   /// if they are wrong, and makes the choices that the case leaves open, for example `physics: auto`.
   std::function<void(Case&)> complete;
+  /// What a run should be warned of before it starts; must be quick.
+  std::function<std::vector<std::string>(const Case&)> warn;
   /// Lines for people, without the ends of the lines; `cost` is that of the case itself.
   std::function<std::vector<std::string>(const Case&, const StepCost& cost)> advise;
 };

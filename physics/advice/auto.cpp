@@ -23,6 +23,14 @@ void complete(Case& definition) {
   definition = std::move(taken);
 }
 
+/// Where nothing is known of water there is nothing to warn of.
+std::vector<std::string> warn(const Case& definition) {
+  const bool known = definition.physics == "two_phase" || !read_advice(definition).materials.empty();
+  if (!known) return {};
+  const std::string found = shortcoming(judge(definition));
+  return found.empty() ? std::vector<std::string>() : std::vector{found};
+}
+
 std::vector<std::string> advise(const Case& definition, const StepCost& cost) {
   if (definition.physics != "total_stress" && definition.physics != "two_phase") return {};
   Judgement judgement = judge(definition);
@@ -53,7 +61,7 @@ bool register_auto() {
 
 const bool registered = register_auto<2>() && register_auto<3>() &&
                         advisor_registry().add("models", {"Which model of water a case needs.", {}},
-                                               {.complete = complete, .advise = advise});
+                                               {.complete = complete, .warn = warn, .advise = advise});
 
 }  // namespace
 }  // namespace sluice::advice

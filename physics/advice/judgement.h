@@ -53,7 +53,10 @@ void measure(Judgement& judgement, const Case& definition, const StepCost& own);
 /// The case with the model `choice`.
 Case with_choice(const Case& definition, const SceneNumbers& scene, std::size_t choice);
 
-/// Lines for people. `measured`: costs are in seconds.
+/// In what the case models too little, and what to take; empty if it does not.
+std::string shortcoming(const Judgement& judgement);
+
+/// Lines for people; costs are in seconds.
 std::vector<std::string> lines(const Judgement& judgement, const Case& definition);
 
 /// The verdict with its numbers, for the results.

@@ -25,6 +25,10 @@ std::string percent(double share) {
 
 std::string line(const std::string& word, const std::string& text) { return fmt::format("{:<16}{}", word, text); }
 
+std::string where(const Demand& demand) {
+  return demand.material.empty() ? "free water" : fmt::format("'{}', {}", demand.material, demand.stage);
+}
+
 class Lines {
  public:
   Lines(const Judgement& judgement, const Case& definition)
@@ -53,12 +57,8 @@ class Lines {
     const Choice& best = choices[judgement_.taken];
     const std::size_t own = judgement_.own.value_or(judgement_.taken);
     const std::string inertia = judgement_.inertia_matters ? "" : "; inertia has no part in what the water does";
-    if (!choices[own].trouble.empty()) {
-      add("WARNING", fmt::format("the case models too little: {}; {}", choices[own].trouble, remedy(own)));
-    } else if (!judgement_.adequate(own)) {
-      add("WARNING",
-          fmt::format("the case models too little: {} is {} off where {} is asked ({}); {}", choices[own].name,
-                      percent(choices[own].demand.error), percent(tolerance), where(choices[own].demand), remedy(own)));
+    if (const std::string too_little = shortcoming(judgement_); !too_little.empty()) {
+      add("WARNING", too_little);
     } else if (own != judgement_.taken && choices[own].cost() > 1.1 * best.cost()) {
       add("model", fmt::format("the case models more than it needs: {} is within {}, too (error {}), and takes {:.2g} "
                                "times less time{}",
@@ -76,15 +76,6 @@ class Lines {
     say_unknown();
   }
 
-  std::string remedy(std::size_t own) const {
-    if (judgement_.taken != own) return "take " + judgement_.choices[judgement_.taken].name;
-    return "no other model of the program can take the case: " + judgement_.choices[3].trouble;
-  }
-
-  static std::string where(const Demand& demand) {
-    return demand.material.empty() ? "free water" : fmt::format("'{}', {}", demand.material, demand.stage);
-  }
-
   /// A simpler model within the tolerance, and why it is not the one to take.
   void say_simpler(std::size_t own) {
     const std::size_t s = judgement_.simplest;
@@ -100,9 +91,18 @@ class Lines {
                       percent(simple.demand.error), simple.steps / judgement_.choices[judgement_.taken].steps));
   }
 
+  /// Of what the case gets wrong, or else of why nothing simpler will do.
+  const Demand& deciding(std::size_t own) const {
+    const auto& choices = judgement_.choices;
+    if (!judgement_.adequate(own) || own < 2 || judgement_.simplest != own) return choices[own].demand;
+    std::size_t nearest = own - 1;
+    for (std::size_t c = 0; c < own; ++c)
+      if (choices[c].demand.error < choices[nearest].demand.error) nearest = c;
+    return choices[nearest].demand;
+  }
+
   void say_numbers(std::size_t own) {
-    const Demand& demand =
-        judgement_.choices[own].model == 4 ? judgement_.choices[2].demand : judgement_.choices[own].demand;
+    const Demand& demand = deciding(own);
     if (demand.material.empty()) return;
     const auto soil = std::ranges::find(scene_.soils, demand.material, &SoilNumbers::name);
     std::string length = std::isfinite(demand.drainage_length)
@@ -222,6 +222,18 @@ class Lines {
 };
 
 }  // namespace
+
+std::string shortcoming(const Judgement& judgement) {
+  if (!judgement.own || !judgement.scene.any_wet()) return "";
+  const Choice& own = judgement.choices[*judgement.own];
+  const std::string remedy = judgement.taken != *judgement.own
+                                 ? "take " + judgement.choices[judgement.taken].name
+                                 : "no other model of the program can take the case: " + judgement.choices[3].trouble;
+  if (!own.trouble.empty()) return fmt::format("the case models too little: {}; {}", own.trouble, remedy);
+  if (judgement.adequate(*judgement.own)) return "";
+  return fmt::format("the case models too little: {} is {} off where {} is asked ({}); {}", own.name,
+                     percent(own.demand.error), percent(judgement.scene.asked.tolerance), where(own.demand), remedy);
+}
 
 std::vector<std::string> lines(const Judgement& judgement, const Case& definition) {
   return Lines(judgement, definition).all();

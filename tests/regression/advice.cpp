@@ -54,6 +54,21 @@ TEST(AdviceOnCases, DamInTotalStresses) {
   expect_words(with("1e-3 m/s"), {"WARNING         the case models too little: undrained total stress is", "take u-p"});
 }
 
+// Said before the first step, and not with -q; the run goes on.
+TEST(AdviceOnCases, ARunIsWarned) {
+  const Scratch scratch;
+  std::vector<std::string> words{"run",   std::string(SLUICE_CASES_DIR) + "/terzaghi_column.yaml",
+                                 "--set", "end_time=1 ms",
+                                 "--set", "advice={frequency: 2 kHz}",
+                                 "--set", "output={}",
+                                 "-o",    "out"};
+  const Ending loud = run_sluice(words, scratch.path());
+  EXPECT_EQ(loud.code, exit_code::done);
+  expect_words(loud.err, {"warning: the case models too little: u-p is ", "take v-w-p"});
+  words.insert(words.end(), {"-q", "--force"});
+  EXPECT_EQ(run_sluice(words, scratch.path()).err, "");
+}
+
 // The run is one of two_phase; what was decided, and by which numbers, stands in both files.
 TEST(AdviceOnCases, AutoRunsAndRecordsWhatItTook) {
   const Scratch scratch;

@@ -85,31 +85,27 @@ Finding findings(const Point& point) {
   return found;
 }
 
-// Never a model that is outside of the tolerance. On the safe side, by a model that costs more than it had to: nowhere;
-// once is allowed, for where an error is predicted beside the tolerance what the discretisation adds (1 to 3 %)
-// decides.
-TEST(Advice, IsTheCheapestModelWithinTheTolerance) {
-  int safe = 0, number = 0;
-  for (const Point& point : plane) {
-    const Finding found = findings(point);
-    const std::string text = fmt::format(
-        "{} {} advised {} cheapest {} measured {:.4f} {:.4f} {:.4f} {:.4f} predicted {:.4f} {:.4f} {:.4f} {:.4f}",
-        point.lg_pi_1, point.lg_pi_2, found.advised, found.cheapest, found.measured[0], found.measured[1],
-        found.measured[2], found.measured[3], found.predicted[0], found.predicted[1], found.predicted[2],
-        found.predicted[3]);
-    RecordProperty(fmt::format("point_{:02}", number++), text);
-    SCOPED_TRACE(text);
-    EXPECT_LT(found.measured[found.advised], tolerance) << "the advice errs on the unsafe side";
-    EXPECT_LT(found.measured[3], 0.03) << "what is left of the discretisation of v-w-p";
-    if (found.advised == found.cheapest) continue;
-    ++safe;
-    EXPECT_GT(found.cost[found.advised], found.cost[found.cheapest]);
-  }
-  RecordProperty("points", number);
-  RecordProperty("on_the_safe_side", safe);
-  EXPECT_GE(number, 12);
-  EXPECT_LE(safe, 1);
+class Advice : public ::testing::TestWithParam<Point> {};
+
+// Never a model that is outside of the tolerance, and at none of the points one that costs more than it had to: how
+// often the advice errs on the safe side is part of the test. (Where an error is predicted beside the tolerance what
+// the discretisation adds, 1 to 3 %, might decide; no point lies there.)
+TEST_P(Advice, IsTheCheapestModelWithinTheTolerance) {
+  const Point& point = GetParam();
+  const Finding found = findings(point);
+  const std::string text = fmt::format(
+      "{} {} advised {} cheapest {} measured {:.4f} {:.4f} {:.4f} {:.4f} predicted {:.4f} {:.4f} {:.4f} {:.4f}",
+      point.lg_pi_1, point.lg_pi_2, found.advised, found.cheapest, found.measured[0], found.measured[1],
+      found.measured[2], found.measured[3], found.predicted[0], found.predicted[1], found.predicted[2],
+      found.predicted[3]);
+  RecordProperty("point", text);
+  SCOPED_TRACE(text);
+  EXPECT_LT(found.measured[found.advised], tolerance) << "the advice errs on the unsafe side";
+  EXPECT_EQ(found.advised, found.cheapest) << "the advice errs on the safe side";
+  EXPECT_LT(found.measured[3], 0.03) << "what is left of the discretisation of v-w-p";
 }
+
+INSTANTIATE_TEST_SUITE_P(Plane, Advice, ::testing::ValuesIn(plane));
 
 /// What the advice is at a point, from the closed forms alone: the letter of the choice, as below.
 char advice_at(const Point& point) {
@@ -125,7 +121,7 @@ char advice_at(const Point& point) {
 }
 
 // The map behind the points: recorded for the figure. Its corners are what they must be.
-TEST(Advice, MapOfThePlane) {
+TEST(AdviceMap, CornersOfThePlane) {
   const auto at = [](double lg_1, double lg_2) { return advice_at({lg_1, lg_2, 1}); };
   EXPECT_EQ(at(-5, -4), 'U');
   EXPECT_EQ(at(4, -4), 'D');

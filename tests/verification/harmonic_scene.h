@@ -30,6 +30,8 @@ struct Point {
   double tolerance = 0.01;
 };
 
+inline void PrintTo(const Point& point, std::ostream* out) { *out << point.lg_pi_1 << ", " << point.lg_pi_2; }
+
 /// A column whose groups are those of the point: modulus and height stay; period, permeability and water follow.
 struct Oscillation {
   SaturatedColumn column;
