@@ -10,6 +10,7 @@
 #include <new>
 #include <thread>
 
+#include "core/case/advice.h"
 #include "core/case/case.h"
 #include "core/case/case_tree.h"
 #include "core/case/reference.h"
@@ -70,6 +71,9 @@ int run(const Arguments& arguments) {
   options.resume = arguments.resume;
   options.force = arguments.force;
   options.quiet = arguments.quiet;
+  for (const auto& [name, entry] : advisor_registry().entries())
+    for (const std::string& line : advisor_registry().find(name, {}).warn(definition))
+      if (!options.quiet) fmt::print(stderr, "warning: {}\n", line);
   return run_case(definition, options);
 }
 

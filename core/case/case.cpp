@@ -1,5 +1,6 @@
 #include "core/case/case.h"
 
+#include "core/case/advice.h"
 #include "core/case/case_schema.h"
 #include "core/case/case_tree.h"
 #include "core/case/consistency.h"
@@ -21,6 +22,7 @@ Case case_of(Node tree, const std::string& file, const std::vector<Override>& ov
   definition.source = std::move(source);
   complete_and_check(definition, problems);
   problems.throw_if_any();
+  for (const auto& [name, entry] : advisor_registry().entries()) advisor_registry().find(name, {}).complete(definition);
   return definition;
 }
 

@@ -120,6 +120,7 @@ struct Case {
   Node initial_stress;  ///< read by the physics module
   Node surface_loads;   ///< the same
   Node water;           ///< the same
+  Node advice;          ///< read by advisors; they add what they decided as `verdict`
   std::vector<ChangeCase> changes;
   SchemeCase scheme;
   OutflowPolicy outflow = OutflowPolicy::error;

@@ -509,6 +509,13 @@ Schema<Case> make_case_schema() {
            .sentence = "Water in the pores and beside the soil; read by the physics module `two_phase`."},
           [](Case& definition, const Node& node, Problems&) { definition.water = node; },
           [](const Case& definition) { return definition.water; })
+      .custom(
+          {.name = "advice",
+           .type = field_type::section,
+           .default_text = "guessed from the case",
+           .sentence = "What `sluice check` and `physics: auto` judge the case by; read by advisors, see `auto` below."},
+          [](Case& definition, const Node& node, Problems&) { definition.advice = node; },
+          [](const Case& definition) { return definition.advice; })
       .sections("changes", &Case::changes, change_schema(), "Materials that give way to others during the run.", false)
       .section("scheme", &Case::scheme, scheme_schema(), "How the equations are discretised.")
       .choice<OutflowPolicy>(

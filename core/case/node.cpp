@@ -37,6 +37,14 @@ Node Node::map() {
   return node;
 }
 
+void Node::erase(const std::string& key) {
+  for (std::size_t i = keys.size(); i-- > 0;)
+    if (keys[i].first == key) {
+      keys.erase(keys.begin() + static_cast<std::ptrdiff_t>(i));
+      items.erase(items.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+}
+
 void Node::set(const std::string& key, Node value) {
   if (Node* const found = find(key)) {
     *found = std::move(value);

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace sluice {
 
@@ -18,8 +20,9 @@ struct Summary {
   double wall_seconds = 0;
   double particle_steps_per_second = 0;
   std::map<std::string, double> stage_seconds;
-  std::map<std::string, double> observations;  ///< final values, by name in the case file, SI units
-  std::map<std::string, double> extra;         ///< further numbers, written beside the others
+  std::map<std::string, double> observations;                ///< final values, by name in the case file, SI units
+  std::map<std::string, double> extra;                       ///< further numbers, written beside the others
+  std::vector<std::pair<std::string, std::string>> verdict;  ///< of an advisor that decided, in words and numbers
 };
 
 /// Writes the file aside and moves it into place. A number that is not finite becomes null. Throws std::runtime_error.

@@ -207,14 +207,15 @@ class Run {
                  checkpoint.file.string());
   }
 
-  /// What must not change between the parts of a run: everything but when it ends, what it writes, and the remedies
-  /// that the messages of a failed run propose.
+  /// What must not change between the parts of a run: everything but when it ends, what it writes, advice, and the
+  /// remedies that the messages of a failed run propose.
   std::string identity() const {
     Case same = case_;
     same.end_time = 1;
     same.output = {};
     same.observe.clear();
     same.outflow = {};
+    same.advice = {};
     const SchemeCase usual;
     same.scheme.fixed_time_step = usual.fixed_time_step;
     same.scheme.courant = usual.courant;
@@ -358,6 +359,9 @@ class Run {
     s.extra["peak_memory_bytes"] = peak_memory();
     s.extra["removed_particles"] = static_cast<double>(simulation_->removed_particles());
     for (const auto& [name, value] : simulation_->totals()) s.extra[name] = value;
+    if (const Node* const verdict = case_.advice.find("verdict"))
+      for (std::size_t i = 0; i < verdict->items.size(); ++i)
+        s.verdict.emplace_back(verdict->keys[i].first, verdict->items[i].scalar);
     s.extra["particle_bytes"] = static_cast<double>(simulation_->memory());
     write_summary(options_.folder / "summary.json", s);
     summary_ = s;

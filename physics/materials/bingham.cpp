@@ -62,6 +62,7 @@ class Bingham final : public Material {
   std::vector<ColumnSpec> columns() const override { return {equivalent_plastic_strain()}; }
   IsotropicElasticity elasticity() const override { return elasticity_; }
   bool linear_elasticity() const override { return true; }
+  Strength strength() const override { return Strength::constant; }
   double stored_energy(std::span<const double> stress) const override { return elasticity_.energy(stress); }
   void update(const MaterialBatch<2>& batch) const override { update_bingham<2>(batch, law_); }
   void update(const MaterialBatch<3>& batch) const override { update_bingham<3>(batch, law_); }

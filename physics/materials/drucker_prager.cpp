@@ -108,6 +108,7 @@ class DruckerPrager final : public Material {
   std::vector<ColumnSpec> columns() const override { return {equivalent_plastic_strain()}; }
   IsotropicElasticity elasticity() const override { return elasticity_; }
   bool linear_elasticity() const override { return true; }
+  Strength strength() const override { return map_.slope > 0 ? Strength::frictional : Strength::constant; }
   double stored_energy(std::span<const double> stress) const override { return elasticity_.energy(stress); }
   void update(const MaterialBatch<2>& batch) const override { update_drucker_prager<2>(batch, elasticity_, map_); }
   void update(const MaterialBatch<3>& batch) const override { update_drucker_prager<3>(batch, elasticity_, map_); }

@@ -15,6 +15,7 @@ class LinearElastic final : public Material {
   double density() const override { return density_; }
   IsotropicElasticity elasticity() const override { return elasticity_; }
   bool linear_elasticity() const override { return true; }
+  Strength strength() const override { return Strength::unlimited; }
   double stored_energy(std::span<const double> stress) const override { return elasticity_.energy(stress); }
   void update(const MaterialBatch<2>& batch) const override;
   void update(const MaterialBatch<3>& batch) const override;

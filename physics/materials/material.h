@@ -41,6 +41,13 @@ struct IsotropicElasticity {
   static IsotropicElasticity from_young(double youngs_modulus, double poisson_ratio);
 };
 
+/// What a material can bear.
+enum class Strength {
+  unlimited,  ///< elastic
+  constant,   ///< whatever the mean stress is: then the pore pressure does not matter to it
+  frictional  ///< it grows with the (effective) mean stress
+};
+
 class Material {
  public:
   virtual ~Material() = default;
@@ -49,6 +56,8 @@ class Material {
   virtual double density() const = 0;
   /// A liquid: has no skeleton, and its pressure belongs to the physics module.
   virtual bool liquid() const { return false; }
+  /// For advice; whatever does not say otherwise is taken for the most demanding.
+  virtual Strength strength() const { return Strength::frictional; }
   /// The size of the cells [m], for a law that depends on it. Called once, before the first update.
   virtual void set_cell_size(double /*h*/) {}
   /// State variables that this model keeps on each of its points, beside the stress. They are 0 until the model first

@@ -33,6 +33,7 @@ class MohrCoulomb final : public Material {
   std::vector<ColumnSpec> columns() const override;
   IsotropicElasticity elasticity() const override { return elasticity_; }
   bool linear_elasticity() const override { return true; }
+  Strength strength() const override { return peak_.sin_friction > 0 ? Strength::frictional : Strength::constant; }
   double stored_energy(std::span<const double> stress) const override { return elasticity_.energy(stress); }
   void set_cell_size(double h) override;
   void update(const MaterialBatch<2>& batch) const override;

@@ -34,6 +34,7 @@ class Newtonian final : public Material {
       : p_(p), cutoff_(p.tension_cutoff.value_or(std::numeric_limits<double>::infinity())) {}
 
   double density() const override { return p_.density; }
+  Strength strength() const override { return Strength::constant; }
   double viscosity() const override { return p_.viscosity; }
   IsotropicElasticity elasticity() const override { return {.lambda = p_.bulk_modulus, .shear = 0}; }
   double stored_energy(std::span<const double> stress) const override {

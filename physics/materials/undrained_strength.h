@@ -60,6 +60,7 @@ class UndrainedMaterial : public Material {
   std::vector<ColumnSpec> columns() const override;
   IsotropicElasticity elasticity() const override { return elasticity_; }
   bool linear_elasticity() const override { return true; }
+  Strength strength() const override { return Strength::constant; }
   double stored_energy(std::span<const double> stress) const override { return elasticity_.energy(stress); }
   /// Throws CaseError if the softening would be steeper than elastic unloading.
   void set_cell_size(double h) override;

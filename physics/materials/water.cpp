@@ -23,6 +23,7 @@ class Water final : public Material {
 
   double density() const override { return density_; }
   bool liquid() const override { return true; }
+  Strength strength() const override { return Strength::constant; }
   double viscosity() const override { return viscosity_; }
   IsotropicElasticity elasticity() const override { return {}; }
   double stored_energy(std::span<const double>) const override { return 0; }

@@ -310,17 +310,7 @@ std::vector<PoreSpace> read_pore_spaces(const Case& definition, const WaterCase&
 Node resolved(const PoreSpace& pores) { return pore_schema().write(pores); }
 
 Case without_pores(Case definition) {
-  for (auto& [name, section] : definition.materials) {
-    Node kept = section;
-    kept.items.clear();
-    kept.keys.clear();
-    for (std::size_t i = 0; i < section.items.size(); ++i)
-      if (section.keys[i].first != "water") {
-        kept.items.push_back(section.items[i]);
-        kept.keys.push_back(section.keys[i]);
-      }
-    section = std::move(kept);
-  }
+  for (auto& [name, section] : definition.materials) section.erase("water");
   return definition;
 }
 

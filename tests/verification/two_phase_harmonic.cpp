@@ -2,149 +2,14 @@
 /// what u-p gets wrong is what its closed form gets wrong, over the plane of Pi1 (drainage) and Pi2 (inertia). Source:
 /// Zienkiewicz, Chang & Bettess (1980); docs/exact_solutions.md, section 4.
 ///
-/// Amplitude and phase of every particle are its Fourier coefficient over a whole period, as a complex number over the
-/// load. The load grows over some periods, and as many pass before it is taken, so that what is not harmonic has
-/// decayed. Errors are root mean squares over the particles. The scheme is of first order in the step, most of it a lag
-/// of the pressure by one step, omega dt. Cells and steps are therefore halved together and extrapolated; one test
-/// shows the order.
-#include <complex>
-#include <map>
-#include <numbers>
+/// How they are measured, and that cells and steps are extrapolated: harmonic_scene.h. One test shows the order.
+#include "tests/verification/harmonic_scene.h"
 
-#include "physics/exact/harmonic_column.h"
-#include "tests/verification/saturated_column.h"
-
-namespace sluice {
+namespace sluice::harmonic {
 namespace {
 
-using Complex = std::complex<double>;
-using exact::ColumnModel;
-
-constexpr double load = 100;  // [Pa]: strains of 1e-5
-constexpr double kappa = 0.9;
-
-/// A point of the plane.
-struct Point {
-  double lg_pi_1, lg_pi_2;
-  int growth;  ///< periods over which the load grows
-  int cells = 20;
-  double tolerance = 0.01;
-};
-
-/// A column whose groups are those of the point: modulus and height stay; period, permeability and water follow.
-struct Oscillation {
-  SaturatedColumn column;
-  exact::HarmonicGroups groups;
-  double period = 0;  ///< [s]
-  int steps = 0;      ///< in a period
-  int periods = 0;    ///< before the one that is looked at
-
-  Oscillation(const Point& point, const std::string& formulation, int cells) {
-    exact::SaturatedSoil& soil = column.soil;
-    groups = exact::zienkiewicz_groups(std::pow(10, point.lg_pi_1), std::pow(10, point.lg_pi_2), kappa,
-                                       soil.water_density / soil.density(), soil.porosity);
-    column.height = 0.25;  // small, for a permeability at which u-p is not refused
-    column.cells = cells;
-    column.formulation = formulation;
-    const double crossing = column.height / std::sqrt(soil.modulus / soil.density());
-    period = 2 * std::numbers::pi * crossing / std::sqrt(groups.inertia);
-    soil.conductivity = soil.water_unit_weight() * 2 * std::numbers::pi / period * column.height * column.height /
-                        (groups.drag * soil.modulus);
-    soil.water_bulk_modulus = soil.porosity * soil.modulus / groups.compliance;
-    const double wave = column.cell() * std::sqrt((1 - soil.porosity) * soil.solid_density / soil.modulus);
-    steps = static_cast<int>(std::ceil(period / (0.5 * wave)));  // half of the limit, as by default
-    column.scheme = column.scheme.with(fmt::format("time_step: {} s", period / steps));
-    periods = 2 * point.growth - 1;
-    write_load(point.growth);
-  }
-
-  /// Straight lines between 200 points in a period, whose harmonic is 1e-4 too small.
-  void write_load(int growth) {
-    constexpr int corners = 200;
-    for (int i = 0; i <= (periods + 1) * corners; ++i) {
-      const double cycles = static_cast<double>(i) / corners, s = std::min(1.0, cycles / growth);
-      column.load += fmt::format("{}[{} s, {} Pa]", i == 0 ? "[" : ", ", cycles * period,
-                                 load * s * s * (3 - 2 * s) * std::cos(2 * std::numbers::pi * cycles));
-    }
-    column.load += "]";
-  }
-};
-
-/// Complex amplitudes by particle: of the pressure over the load, and of the settlement over load * height / modulus.
-struct Amplitudes {
-  std::vector<double> depth;  ///< over the height
-  std::vector<Complex> p, u;
-};
-
-Amplitudes run(const Oscillation& oscillation) {
-  const SaturatedColumn& column = oscillation.column;
-  const auto simulation = simulate(column);
-  const auto start = heights(simulation->particles());
-  Amplitudes found;
-  for (const double z : start) found.depth.push_back(1 - z / column.height);
-  found.p.resize(start.size());
-  found.u.resize(start.size());
-  take_steps(*simulation, oscillation.periods * oscillation.steps);
-  for (int i = 0; i < oscillation.steps; ++i) {
-    simulation->advance(1e6);
-    const double phase = 2 * std::numbers::pi * simulation->time() / oscillation.period;
-    const Complex turn = std::polar(2.0 / oscillation.steps, -phase);
-    const auto pressure = by_id(simulation->particles(), "pore_pressure");
-    const auto height = heights(simulation->particles());
-    for (std::size_t p = 0; p < start.size(); ++p) {
-      found.p[p] += turn * pressure[p] / load;
-      found.u[p] += turn * (start[p] - height[p]) * column.soil.modulus / (load * column.height);
-    }
-  }
-  return found;
-}
-
-/// Without what is of first order as cells and steps go to zero together: twice the finer less the coarser. A particle
-/// of the coarser stands in the middle of four of the finer.
-Amplitudes extrapolated(const Amplitudes& coarse, const Amplitudes& fine) {
-  const double rows = static_cast<double>(coarse.depth.size()) / 2;
-  const auto row = [&](double depth) { return static_cast<int>(depth * rows); };
-  std::map<int, std::pair<Complex, Complex>> means;
-  for (std::size_t i = 0; i < fine.depth.size(); ++i) {
-    means[row(fine.depth[i])].first += fine.p[i] / 4.0;
-    means[row(fine.depth[i])].second += fine.u[i] / 4.0;
-  }
-  Amplitudes limit = coarse;
-  for (std::size_t i = 0; i < coarse.depth.size(); ++i) {
-    const auto& [p, u] = means.at(row(coarse.depth[i]));
-    limit.p[i] = 2.0 * p - coarse.p[i];
-    limit.u[i] = 2.0 * u - coarse.u[i];
-  }
-  return limit;
-}
-
-Amplitudes closed_form(const std::string& formulation, const exact::HarmonicGroups& groups,
-                       const std::vector<double>& depth) {
-  const exact::HarmonicColumn column(formulation == "u-p" ? ColumnModel::u_p : ColumnModel::full, groups);
-  Amplitudes exact{.depth = depth, .p = {}, .u = {}};
-  for (const double z : depth) {
-    const auto state = column.at(z);
-    exact.p.push_back(state.p);
-    exact.u.push_back(state.u);
-  }
-  return exact;
-}
-
-std::vector<Complex> difference(std::vector<Complex> a, const std::vector<Complex>& b) {
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
-  return a;
-}
-
-double rms(const std::vector<Complex>& a) {
-  double sum = 0;
-  for (const Complex& x : a) sum += std::norm(x);
-  return std::sqrt(sum / static_cast<double>(a.size()));
-}
-
-/// Normalised as exact::model_error is.
-exact::ModelError error(const Amplitudes& found, const Amplitudes& exact) {
-  return {rms(difference(found.u, exact.u)) / rms(exact.u),
-          rms(difference(found.p, exact.p)) / std::max(rms(exact.p), 0.1)};
+ColumnModel model_of(const std::string& formulation) {
+  return formulation == "u-p" ? ColumnModel::u_p : ColumnModel::full;
 }
 
 /// How much of the deviation `predicted` is in `found`: 1 where it is as large and in phase.
@@ -178,8 +43,8 @@ Deviations deviations(const Point& point) {
   for (const std::string formulation : {"u-p", "v-w-p"}) {
     const Oscillation coarse(point, formulation, point.cells), fine(point, formulation, 2 * point.cells);
     const Amplitudes limit = extrapolated(run(coarse), run(fine));
-    biot = closed_form("v-w-p", coarse.groups, limit.depth);
-    predicted = closed_form("u-p", coarse.groups, limit.depth);
+    biot = closed_form(ColumnModel::full, coarse.groups, limit.depth);
+    predicted = closed_form(ColumnModel::u_p, coarse.groups, limit.depth);
     const exact::ModelError own = error(limit, formulation == "u-p" ? predicted : biot);
     EXPECT_LT(own.pressure, point.tolerance) << formulation;
     EXPECT_LT(own.displacement, point.tolerance) << formulation;
@@ -226,8 +91,8 @@ TEST(HarmonicColumn, ConvergesToItsClosedForm) {
     for (const int cells : {10, 20, 40}) {
       const Oscillation oscillation(point, formulation, cells);
       const Amplitudes found = run(oscillation);
-      own.push_back(error(found, closed_form(formulation, oscillation.groups, found.depth)).pressure);
-      wrong.push_back(error(found, closed_form(other, oscillation.groups, found.depth)).pressure);
+      own.push_back(error(found, closed_form(model_of(formulation), oscillation.groups, found.depth)).pressure);
+      wrong.push_back(error(found, closed_form(model_of(other), oscillation.groups, found.depth)).pressure);
     }
     SCOPED_TRACE(fmt::format("{}: {:.3f} {:.3f} {:.3f}", formulation, own[0], own[1], own[2]));
     EXPECT_GT(std::log2(own[0] / own[2]) / 2, 0.9);
@@ -237,4 +102,4 @@ TEST(HarmonicColumn, ConvergesToItsClosedForm) {
 }
 
 }  // namespace
-}  // namespace sluice
+}  // namespace sluice::harmonic
