@@ -163,7 +163,7 @@ Schema<FaceKeys> face_schema() {
           Absent{"none"});
 }
 
-const std::vector<std::string> face_shorthands{"free", "roller", "fixed"};
+const std::vector<std::string> face_shorthands{"free", "roller", "fixed", "periodic"};
 
 /// What the keys of a section mean; `name` is what messages call it.
 FaceCase surface_of(const FaceKeys& keys, const Node& node, const std::string& name, Problems& problems) {
@@ -211,7 +211,8 @@ FaceCase read_face(const Node& node, const std::string& name, Problems& problems
     return surface_of(schema.read(node, {}, problems), node, "boundaries." + name, problems);
   FaceCase face;
   const auto word = value::word(node, "boundaries." + name, face_shorthands, problems);
-  if (word && *word != "free") face.normal = FaceCase::Normal::fixed;
+  face.periodic = word && *word == "periodic";
+  if (word && *word != "free" && !face.periodic) face.normal = FaceCase::Normal::fixed;
   if (word && *word == "fixed") face.tangential = Tangential::fixed;
   return face;
 }
@@ -249,9 +250,10 @@ Node write_faces(const Case& definition) {
   Node faces = Node::map();
   for (const std::string& name : face_words(definition.dimension())) {
     const auto found = definition.faces.find(name);
+    const FaceCase face = found == definition.faces.end() ? FaceCase{} : found->second;
     Node keys = Node::map();
-    write_surface(found == definition.faces.end() ? FaceCase{} : found->second, keys);
-    faces.set(name, keys);
+    write_surface(face, keys);
+    faces.set(name, face.periodic ? Node::text("periodic") : keys);
   }
   return faces;
 }
@@ -472,7 +474,9 @@ Schema<Case> make_case_schema() {
                .type = field_type::named_sections,
                .default_text = "every face free",
                .sentence = "Faces of the grid: left, right, bottom, top, and front, back in 3-D. A word is short for a "
-                           "section: `fixed` fixes all motion, `roller` the normal one, `free` none.",
+                           "section: `fixed` fixes all motion, `roller` the normal one, `free` none. Both faces of an "
+                           "axis may be `periodic`: what leaves through one comes in at the other; the axis then has a "
+                           "multiple of 8 cells in 2-D, of 4 in 3-D.",
                .nested = face_schema().docs(),
                .alternatives = {{.type = field_type::word, .words = face_shorthands}}},
               read_faces, write_faces)

@@ -7,6 +7,7 @@
 
 #include "core/case/case_schema.h"
 #include "core/case/region_schema.h"
+#include "core/grid/geometry.h"
 
 namespace sluice {
 
@@ -104,6 +105,33 @@ class Consistency {
     for (const std::string& name : allowed) case_.faces.try_emplace(name);
     for (const auto& [name, face] : case_.faces)
       if (!face.velocity.empty()) check_velocity(face, *section->find(name));
+    for (std::size_t a = 0; a < dimension_; ++a) check_periodic(a, allowed[2 * a], allowed[2 * a + 1]);
+  }
+
+  /// Both faces of an axis are periodic or none, and blocks fit (core/grid/geometry.h).
+  void check_periodic(std::size_t a, const std::string& lower, const std::string& upper) {
+    const bool low = case_.faces[lower].periodic, high = case_.faces[upper].periodic;
+    if (!low && !high) return;
+    const Node& section = *case_.source.find("boundaries");
+    if (low != high) {
+      const std::string &one = low ? lower : upper, &other = low ? upper : lower;
+      problems_.add(place_of(section, one),
+                    fmt::format("boundaries.{0}: periodic, but {1} is not; what leaves through one of them comes in at "
+                                "the other: give `{1}: periodic`, too",
+                                one, other));
+      return;
+    }
+    const GridCase& grid = case_.grid;
+    const int width = dimension_ == 2 ? block_width<2> : block_width<3>;
+    const auto cells = static_cast<int>(std::lround((grid.max[a] - grid.min[a]) / grid.cell[a]));
+    case_.grid.periodic[a] = true;
+    if (cells % width == 0) return;
+    const int below = cells / width * width;
+    const std::string nearest = below == 0 ? std::to_string(width) : fmt::format("{} or {}", below, below + width);
+    problems_.add(place_of(section, lower),
+                  fmt::format("boundaries.{}: a periodic axis needs a multiple of {} cells in {}-D; there are {} along "
+                              "{}; take {}",
+                              lower, width, dimension_, cells, axis_name(a), nearest));
   }
 
   void check_velocity(const FaceCase& face, const Node& section) {

@@ -23,7 +23,8 @@ struct Scene {
   explicit Scene(const Case& definition);
 
   GridGeometry<Dim> grid;
-  Vector<Dim> gravity{};  ///< [m/s2]
+  GridGeometry<Dim> unrolled;  ///< as the kernels see it
+  Vector<Dim> gravity{};       ///< [m/s2]
   std::unique_ptr<ShapeKernels<Dim>> shape;
   TransferScheme transfer;
   SchemeCase scheme;
@@ -59,6 +60,12 @@ struct Scene {
   bool any_friction() const { return faces.any_friction() || obstacles.any_friction(); }
   /// Whether anything asks for the area of the surface of the material.
   bool wants_area() const { return faces.any_adhesion() || obstacles.any_adhesion() || dashpots.any(); }
+
+  /// Shape functions at a point, and where a node stands along an axis, by the numbers that nodes have in the grid.
+  Stencil<Dim> stencil(const Vector<Dim>& x, std::span<const double> domain_numbers) const;
+  double node_position(int axis, int node) const {
+    return shape->node_position(unrolled, axis, node + grid.first_inside()[static_cast<std::size_t>(axis)]);
+  }
 
   BlockParticles<Dim> view(const ParticleBlock<Dim>& block) const;
   /// The affine columns are null when the transfer is not affine.
