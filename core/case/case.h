@@ -69,6 +69,14 @@ struct ChangeCase {
   Place place;
 };
 
+/// Bodies that do not stick to each other.
+struct ContactCase {
+  std::vector<std::string> materials;  ///< each a body of its own; all other materials are one more
+  double friction = 0;                 ///< Coulomb coefficient
+  double adhesion = 0;                 ///< shear traction that needs no pressure [Pa]
+  Place place;
+};
+
 /// How the equations are discretised. See docs/theory.md.
 struct SchemeCase {
   std::string shape = "quadratic_bspline";
@@ -122,6 +130,7 @@ struct Case {
   Node surface_loads;   ///< the same
   Node water;           ///< the same
   std::vector<ChangeCase> changes;
+  std::optional<ContactCase> contact;
   SchemeCase scheme;
   OutflowPolicy outflow = OutflowPolicy::error;
   double end_time = 0;  ///< [s]

@@ -310,6 +310,17 @@ Schema<ChangeCase> change_schema() {
             "Material that takes its place; points keep their stress and all other state.");
 }
 
+// ---- contact ----
+
+Schema<ContactCase> contact_schema() {
+  return Schema<ContactCase>("contact")
+      .words("materials", &ContactCase::materials,
+             "Materials that are bodies of their own; all other materials together are one more.")
+      .quantity("friction", &ContactCase::friction, unit::none, at_least(0), "Coulomb coefficient of friction.", 0.0)
+      .quantity("adhesion", &ContactCase::adhesion, unit::stress, at_least(0),
+                "Shear stress that friction may take without pressure.", 0.0);
+}
+
 // ---- scheme
 // ------------------------------------------------------------------------------------------------------------
 
@@ -509,6 +520,9 @@ Schema<Case> make_case_schema() {
           [](Case& definition, const Node& node, Problems&) { definition.water = node; },
           [](const Case& definition) { return definition.water; })
       .sections("changes", &Case::changes, change_schema(), "Materials that give way to others during the run.", false)
+      .section("contact", &Case::contact, contact_schema(),
+               "Bodies that do not stick to each other where they touch; for the physics `total_stress`.",
+               Absent{"all bodies stick together"})
       .section("scheme", &Case::scheme, scheme_schema(), "How the equations are discretised.")
       .choice<OutflowPolicy>(
           "outflow", &Case::outflow,

@@ -28,6 +28,7 @@ class Consistency {
   void run() {
     check_materials_of_bodies();
     check_changes();
+    if (case_.contact) check_contact();
     const bool has_grid = check_grid();
     if (!has_grid) return;
     dimension_ = case_.grid.min.size();
@@ -182,6 +183,23 @@ class Consistency {
         if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
           problems_.add(change.place,
                         fmt::format("changes: unknown material '{}'; {}", name, allowed_words(name, names)));
+  }
+
+  void check_contact() {
+    const Node& section = *case_.source.find("contact");
+    case_.contact->place = section.place;
+    std::vector<std::string> names;
+    for (const auto& [name, material] : case_.materials) names.push_back(name);
+    constexpr std::size_t most = 63;
+    if (case_.contact->materials.empty())
+      problems_.add(place_of(section, "materials"),
+                    "contact: materials: there are none; name those that are bodies of their own");
+    if (case_.contact->materials.size() > most)
+      problems_.add(place_of(section, "materials"), fmt::format("contact: at most {} materials are possible", most));
+    for (const std::string& name : case_.contact->materials)
+      if (std::ranges::find(names, name) == names.end())
+        problems_.add(place_of(section, "materials"),
+                      fmt::format("contact: unknown material '{}'; {}", name, allowed_words(name, names)));
   }
 
   void check_body(BodyCase& body, const Node& section) {

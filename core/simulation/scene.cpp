@@ -62,11 +62,14 @@ Scene<Dim>::Scene(const Case& definition)
       obstacles(definition.obstacles, node_places<Dim>(*this), 0.5 * (shape->reach() + 1), grid.min, periods(grid)),
       particles(Dim) {
   for (std::size_t a = 0; a < Dim; ++a) gravity[a] = definition.gravity.empty() ? 0 : definition.gravity[a];
+  std::vector<std::string> materials;
+  for (const auto& [name, section] : definition.materials) materials.push_back(name);
+  if (definition.contact) contact = std::make_unique<BodyContact<Dim>>(*definition.contact, materials);
   if (grid.any_periodic()) particles.declare_periodic(periods(grid));
   if (transfer.affine)
     affine = particles.columns.declare({"affine_velocity", "1/s", Dim * Dim, Role::state,
                                         "Affine velocity field, row by row: component, direction.", false});
-  if (wants_area())
+  if (wants_area() || contact != nullptr)
     unit_pressure = particles.columns.declare(
         {"unit_pressure", "1", 2, Role::derived, "Ones and zeros: a stress of one, and none.", false});
   if (transfer.affine && !transfer.gradient && !shape->takes_moments())
@@ -92,8 +95,9 @@ void Scene<Dim>::initialise_domains() {
 template <int Dim>
 void Scene<Dim>::resize_nodes() {
   nodes.resize(blocks, shape->reach());
-  if (wants_area()) {
-    surface.resize(blocks, shape->reach());
+  if (wants_area()) surface.resize(blocks, shape->reach());
+  if (contact != nullptr) contact->resize(blocks, shape->reach());
+  if (unit_pressure.index >= 0) {
     std::fill_n(particles.columns.data(unit_pressure, 0), particles.size(), 1.0);
     std::fill_n(particles.columns.data(unit_pressure, 1), particles.size(), 0.0);
   }
@@ -140,6 +144,14 @@ ScatterInput<Dim> Scene<Dim>::scatter_input(const ParticleBlock<Dim>& block) con
   for (int c = 0; c < symmetric_components<Dim>; ++c) in.stress[c] = columns.data(particles.stress, c);
   if (transfer.affine)
     for (int c = 0; c < Dim * Dim; ++c) in.affine[c] = columns.data(affine, c);
+  return in;
+}
+
+template <int Dim>
+ScatterInput<Dim> Scene<Dim>::surface_input(const ParticleBlock<Dim>& block) const {
+  ScatterInput<Dim> in = scatter_input(block);
+  for (int c = 0; c < symmetric_components<Dim>; ++c)
+    in.stress[c] = particles.columns.data(unit_pressure, c < Dim ? 0 : 1);
   return in;
 }
 
