@@ -1,4 +1,6 @@
 /// Bodies that do not stick to each other: what they do where they touch, against rigid bodies and waves.
+#include <functional>
+
 #include "core/parallel/parallel.h"
 #include "core/simulation/physics_module.h"
 #include "tests/verification/scene_fixture.h"
@@ -40,52 +42,56 @@ constexpr double bar_length = 25, wave_speed = 10, bar_speed = 0.1;
 /// Two equal bars run into each other head-on. Each is stopped by a wave that runs to its free end and comes back as
 /// one that throws it back: contact lasts 2 L / c with the constant force rho c v A, and the bars part with exchanged
 /// velocities and no stress.
-SceneText bars(const Scheme& scheme, double h, bool contact) {
+SceneText bars(const Scheme& scheme, double h, bool contact, bool apart) {
+  const double gap = apart ? 1 : 0;
   return {.grid = fmt::format("{{min: [-40 m, 0 m], max: [40 m, 1 m], cell: {} m}}", h),
           .material = two_materials,
           .bodies = fmt::format(
-              "  - {{material: soil, box: {{min: [-26 m, 0 m], max: [-1 m, 1 m]}}, velocity: [{0}, 0 m/s]}}\n"
-              "  - {{material: block, box: {{min: [1 m, 0 m], max: [26 m, 1 m]}}, velocity: [-{0}, 0 m/s]}}",
-              bar_speed),
+              "  - {{material: soil, box: {{min: [-{2} m, 0 m], max: [-{1} m, 1 m]}}, velocity: [{0}, 0 m/s]}}\n"
+              "  - {{material: block, box: {{min: [{1} m, 0 m], max: [{2} m, 1 m]}}, velocity: [-{0}, 0 m/s]}}",
+              bar_speed, gap, gap + bar_length),
           .boundaries = "{bottom: roller, top: roller}",
           .scheme = scheme,
           .more = contact ? "contact: {materials: [block]}\n" : ""};
 }
 
 struct Exchange {
-  double velocity = 0;  ///< of the first bar after it parts, over minus that before
+  double velocity = 0;  ///< of the first bar over minus that before, 4 L / c after the bars begin to feel each other
   double rate = 0;      ///< at which it loses its momentum in between, over rho c v A
 };
 
-/// Ends 4 L / c after the bars begin to feel each other: those that stick together have their first velocities then.
-Exchange collide(const Scheme& scheme, double h, bool contact) {
-  const auto simulation = simulate(bars(scheme, h, contact));
+Exchange collide(const Scheme& scheme, double h, bool contact = true, bool apart = true) {
+  const auto simulation = simulate(bars(scheme, h, contact, apart));
   const Particles& particles = simulation->particles();
   const double start = body_of(particles, "soil").momentum[0];
-  double touch = 1e6, high = 0, low = 0;
-  while (simulation->time() < touch + 4 * bar_length / wave_speed) {
+  double left = 1, touch = 0, high = 0, low = 0;
+  while (left > 0.98) {
     simulation->advance(1e6);
-    const double left = body_of(particles, "soil").momentum[0] / start;
-    if (left > 0.98) touch = simulation->time();
-    if (left > 0.5) high = simulation->time();
-    if (left > -0.5) low = simulation->time();
-    EXPECT_LT(std::abs(total_momentum(particles, 0)), 1e-12 * start);
-    if (simulation->time() > 30) break;
+    left = body_of(particles, "soil").momentum[0] / start;
+    touch = simulation->time();
   }
-  return {-body_of(particles, "soil").velocity(0) / bar_speed, 1 / (low - high) / (wave_speed / bar_length)};
+  const double end = touch + 4 * bar_length / wave_speed;
+  while (simulation->time() < end) {
+    simulation->advance(end);
+    left = body_of(particles, "soil").momentum[0] / start;
+    if (high == 0 && left < 0.5) high = simulation->time();
+    if (low == 0 && left < -0.5) low = simulation->time();
+    EXPECT_LT(std::abs(total_momentum(particles, 0)), 1e-12 * start);
+  }
+  return {-left, bar_length / wave_speed / (low - high)};
 }
 
 class CollidingBars : public ::testing::TestWithParam<Scheme> {};
 
-// The bars exchange their velocities but for what the ends lose, which are a support wide: with h = 1/2 m, a fiftieth
-// of a bar, 6 % with quadratic and 10 % with cubic functions, and half of that with cells of half the size. In between,
-// the momentum falls with the rate rho c v A, to 3 %. Momentum of both together is round-off throughout.
+// The bars exchange their velocities but for what their ends lose, which are as wide as a shape function: with h = 1/2
+// m, a fiftieth of a bar, 1 % with uGIMP, 3 % with CPDI, 4 % with quadratic and 7 % with cubic functions, and half of
+// that with cells of half the size; a bar that meets a face with `normal: contact` loses as much. In between, the
+// momentum falls with the rate rho c v A. Momentum of both together is round-off throughout.
 TEST_P(CollidingBars, ExchangeTheirVelocitiesAndPart) {
-  const Exchange coarse = collide(GetParam(), 0.5, true), fine = collide(GetParam(), 0.25, true);
-  EXPECT_NEAR(coarse.velocity, 1, 0.13);
-  EXPECT_NEAR(fine.velocity, 1, 0.065);
-  EXPECT_NEAR(coarse.rate, 1, 0.03);
-  EXPECT_NEAR(fine.rate, 1, 0.03);
+  const Exchange coarse = collide(GetParam(), 0.5), fine = collide(GetParam(), 0.25);
+  EXPECT_NEAR(coarse.velocity, 1, 0.08);
+  EXPECT_NEAR((1 - fine.velocity) / (1 - coarse.velocity), 0.5, 0.05);
+  EXPECT_NEAR(fine.rate, 1, 0.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, CollidingBars, ::testing::ValuesIn([] {
@@ -97,8 +103,12 @@ INSTANTIATE_TEST_SUITE_P(Schemes, CollidingBars, ::testing::ValuesIn([] {
                          }()),
                          scheme_name);
 
-// The negative control: with one field of nodes the bars stick together, swing, and come forward again.
-TEST(StickingBars, DoNotPart) { EXPECT_LT(collide({}, 0.5, false).velocity, -0.5); }
+// The negative control: bars that touch at the start part as well, but with one field of nodes they stick together,
+// swing, and come forward again.
+TEST(StickingBars, DoNotPart) {
+  EXPECT_GT(collide({}, 0.5, true, false).velocity, 0.9);
+  EXPECT_LT(collide({}, 0.5, false, false).velocity, -0.8);
+}
 
 // ---- a block on an elastic bench, in a frame that leans ----
 
@@ -160,40 +170,32 @@ TEST(StickingBlock, StaysWithoutFriction) {
 
 // ---- conservation ----
 
-/// Two discs graze each other; linear momentum is kept to round-off, angular momentum by APIC to round-off of the
-/// transfers and the normals, which have one line of action at a node.
+/// Two discs graze each other. Linear momentum is kept to round-off, and the angular momentum of APIC, which its affine
+/// fields carry in part, to round-off, too: both bodies have their impulses at one place, the node.
 TEST(GrazingDiscs, KeepMomentum) {
-  for (const Scheme& scheme :
-       {Scheme{"quadratic_bspline", "apic", "usl"}, Scheme{"quadratic_bspline", "flip", "usl"}}) {
-    const auto simulation = simulate(
-        {.grid = "{min: [-5 m, -5 m], max: [5 m, 5 m], cell: 0.25 m}",
-         .material = two_materials,
-         .bodies = "  - {material: soil, circle: {centre: [-1.5 m, 0.6 m], radius: 1 m}, velocity: [1, 0 m/s]}\n"
-                   "  - {material: block, circle: {centre: [1.5 m, -0.6 m], radius: 1 m}, velocity: [-1, 0 m/s]}",
-         .scheme = scheme,
-         .more = "contact: {materials: [block], friction: 0.5}\n"});
-    const Particles& particles = simulation->particles();
-    const auto mass = by_id(particles, "mass");
-    const auto angular = [&] {
-      const auto x = by_id(particles, "position"), y = by_id(particles, "position", 1),
-                 u = by_id(particles, "velocity"), v = by_id(particles, "velocity", 1);
-      double all = 0;
-      for (std::size_t p = 0; p < mass.size(); ++p) all += mass[p] * (x[p] * v[p] - y[p] * u[p]);
-      if (scheme.affine()) {
-        // What the affine fields carry: sum m D (C_yx - C_xy), D = h^2 / 4.
-        const auto c_xy = by_id(particles, "affine_velocity", 1), c_yx = by_id(particles, "affine_velocity", 2);
-        for (std::size_t p = 0; p < mass.size(); ++p) all += mass[p] * 0.0625 / 4 * (c_yx[p] - c_xy[p]);
-      }
-      return all;
-    };
-    const double before = angular(), momentum = body_of(particles, "soil").momentum[0];
-    while (simulation->time() < 3) simulation->advance(3);
-    EXPECT_LT(std::abs(total_momentum(particles, 0)), 1e-12 * momentum);
-    EXPECT_LT(std::abs(total_momentum(particles, 1)), 1e-12 * momentum);
-    EXPECT_NEAR(angular() / before, 1, scheme.affine() ? 1e-3 : 0.01) << scheme.name();
-    // They have touched, and spin.
-    EXPECT_LT(body_of(particles, "soil").velocity(0), 0.9);
-  }
+  const auto simulation = simulate(
+      {.grid = "{min: [-5 m, -5 m], max: [5 m, 5 m], cell: 0.25 m}",
+       .material = two_materials,
+       .bodies = "  - {material: soil, circle: {centre: [-1.5 m, 0.6 m], radius: 1 m}, velocity: [1, 0 m/s]}\n"
+                 "  - {material: block, circle: {centre: [1.5 m, -0.6 m], radius: 1 m}, velocity: [-1, 0 m/s]}",
+       .more = "contact: {materials: [block], friction: 0.5}\n"});
+  const Particles& particles = simulation->particles();
+  const auto mass = by_id(particles, "mass");
+  const auto angular = [&] {
+    const auto x = by_id(particles, "position"), y = by_id(particles, "position", 1);
+    const auto u = by_id(particles, "velocity"), v = by_id(particles, "velocity", 1);
+    const auto c_xy = by_id(particles, "affine_velocity", 1), c_yx = by_id(particles, "affine_velocity", 2);
+    double all = 0;  // with D = h^2 / 4
+    for (std::size_t p = 0; p < mass.size(); ++p)
+      all += mass[p] * (x[p] * v[p] - y[p] * u[p] + 0.0625 / 4 * (c_yx[p] - c_xy[p]));
+    return all;
+  };
+  const double before = angular(), momentum = body_of(particles, "soil").momentum[0];
+  while (simulation->time() < 3) simulation->advance(3);
+  EXPECT_LT(std::abs(total_momentum(particles, 0)), 1e-12 * momentum);
+  EXPECT_LT(std::abs(total_momentum(particles, 1)), 1e-12 * momentum);
+  EXPECT_NEAR(angular() / before, 1, 1e-12);
+  EXPECT_LT(body_of(particles, "soil").velocity(0), 0.9);  // they have touched
 }
 
 // Bodies that move together do not know that they are two.
@@ -210,6 +212,49 @@ TEST(TouchingBodies, MoveAsOne) {
   const Particles& particles = simulation->particles();
   for (const double v : by_id(particles, "velocity")) EXPECT_NEAR(v, 1, 1e-12);
   for (const double v : by_id(particles, "velocity", 1)) EXPECT_NEAR(v, 2, 1e-12);
+}
+
+// ---- what does not go with it ----
+
+std::string refusal(const std::function<void(SceneText&)>& change) {
+  SceneText scene = sliding({}, 0.2);
+  change(scene);
+  try {
+    simulate(scene);
+  } catch (const CaseError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ContactRefused, SaysWhatAndWhere) {
+  EXPECT_EQ(refusal([](SceneText&) {}), "");
+  EXPECT_EQ(
+      refusal([](SceneText& s) { s.scheme.stress_update = "usf"; }),
+      "scene.yaml:4:10: contact: it does not go with `stress_update: usf`; it gains energy where bodies meet; take "
+      "usl");
+  EXPECT_EQ(refusal([](SceneText& s) { s.scheme.transfer = "xpic"; }),
+            "scene.yaml:4:10: contact: it does not go with `transfer: xpic`; take flip, apic or tpic");
+  EXPECT_EQ(refusal([](SceneText& s) { s.scheme.more = "f_bar: true"; }),
+            "scene.yaml:4:10: contact: it does not go with `f_bar: true`; cells that two bodies share would have one "
+            "volume change");
+  EXPECT_EQ(
+      refusal([](SceneText& s) { s.scheme.more = "integration: implicit_static, time_step: 1 s"; }),
+      "scene.yaml:4:10: contact: it does not go with `integration: implicit_static`; take `integration: explicit`");
+  EXPECT_EQ(
+      refusal([](SceneText& s) { s.boundaries = "{bottom: {normal: fixed, adhesion: 1 kPa}}"; }),
+      "scene.yaml:4:10: contact: it does not go with `adhesion` of boundaries.bottom; take free, roller, fixed or "
+      "friction");
+  EXPECT_EQ(refusal([](SceneText& s) { s.more = "contact: {materials: [blok]}\n"; }),
+            "scene.yaml:4:22: contact: unknown material 'blok'; allowed: soil, block; did you mean 'block'?");
+  EXPECT_EQ(refusal([](SceneText& s) { s.more = "contact: {materials: [block], friction: -1}\n"; }),
+            "scene.yaml:4:41: friction is -1; it must be at least 0");
+  EXPECT_NE(refusal([](SceneText& s) { s.more += "surface_loads: [{pressure: 1 kPa}]\n"; }).find("`surface_loads`"),
+            std::string::npos);
+  EXPECT_NE(refusal([](SceneText& s) {
+              s.more += "obstacles: {wall: {box: {min: [8 m, 2 m], max: [9 m, 3 m]}}}\n";
+            }).find("`obstacles`"),
+            std::string::npos);
 }
 
 // ---- in space, on several threads, after a restart ----
