@@ -74,6 +74,7 @@ struct ContactCase {
   std::vector<std::string> materials;  ///< each a body of its own; all other materials are one more
   double friction = 0;                 ///< Coulomb coefficient
   double adhesion = 0;                 ///< shear traction that needs no pressure [Pa]
+  std::vector<double> normal;          ///< of the surfaces, either way round; empty: found from the particles
   Place place;
 };
 

@@ -318,7 +318,10 @@ Schema<ContactCase> contact_schema() {
              "Materials that are bodies of their own; all other materials together are one more.")
       .quantity("friction", &ContactCase::friction, unit::none, at_least(0), "Coulomb coefficient of friction.", 0.0)
       .quantity("adhesion", &ContactCase::adhesion, unit::stress, at_least(0),
-                "Shear stress that friction may take without pressure.", 0.0);
+                "Shear stress that friction may take without pressure.", 0.0)
+      .quantities("normal", &ContactCase::normal, unit::none, any_number, dimensions,
+                  "Normal of the surfaces where these are flat and known, for example a slope; either way round.",
+                  Absent{"found from the particles: for surfaces along the grid"});
 }
 
 // ---- scheme

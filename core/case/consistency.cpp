@@ -32,6 +32,7 @@ class Consistency {
     const bool has_grid = check_grid();
     if (!has_grid) return;
     dimension_ = case_.grid.min.size();
+    if (case_.contact && !case_.contact->normal.empty()) check_normal();
     check_components(case_.gravity, "gravity", case_.source);
     check_faces();
     check_obstacles();
@@ -200,6 +201,16 @@ class Consistency {
       if (std::ranges::find(names, name) == names.end())
         problems_.add(place_of(section, "materials"),
                       fmt::format("contact: unknown material '{}'; {}", name, allowed_words(name, names)));
+  }
+
+  void check_normal() {
+    const std::vector<double>& normal = case_.contact->normal;
+    const Place place = place_of(*case_.source.find("contact"), "normal");
+    if (normal.size() != dimension_)
+      problems_.add(place, fmt::format("contact: normal: found {} components; the grid has {} dimensions",
+                                       normal.size(), dimension_));
+    else if (std::ranges::all_of(normal, [](double component) { return component == 0; }))
+      problems_.add(place, "contact: normal: all components are 0");
   }
 
   void check_body(BodyCase& body, const Node& section) {

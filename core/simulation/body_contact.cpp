@@ -19,6 +19,10 @@ BodyContact<Dim>::BodyContact(const ContactCase& contact, const std::vector<std:
   law_.tangential = FaceCase::Tangential::friction;
   law_.friction = contact.friction;
   law_.adhesion = contact.adhesion;
+  double length = 0;
+  for (const double component : contact.normal) length = std::hypot(length, component);
+  given_normal_ = length > 0;
+  for (int k = 0; given_normal_ && k < Dim; ++k) normal_[k] = contact.normal[static_cast<std::size_t>(k)] / length;
   // The materials of the list are bodies of their own, numbered as in it; all others are one more.
   for (const std::string& name : materials)
     body_of_.push_back(static_cast<int>(std::ranges::find(contact.materials, name) - contact.materials.begin()));
@@ -71,23 +75,38 @@ void BodyContact<Dim>::exchange(const Blocks<Dim>& blocks, std::size_t node_bloc
     }
 }
 
-/// The normal, out of body a, is that of the surface which both bodies have at the node: of each component, what the
-/// two agree on. A mean of both (Nairn 2013), or the larger one, would tilt where one body ends on the flat side of the
-/// other, and plough. A unit tension pulls a surface inwards.
+/// The surface that both bodies have at a node, as a vector out of body a: of each component, what the two agree on. A
+/// mean of both (Nairn 2013), or the larger one, would tilt where one body ends on the flat side of the other, and
+/// plough. With a normal that is given, what they have along it. A unit tension pulls a surface inwards.
+template <int Dim>
+Vector<Dim> BodyContact<Dim>::common_surface(const Lane& pull_a, const Lane& pull_b) const {
+  Vector<Dim> common{};
+  double along_a = 0, along_b = 0, most = 0, area = 0;
+  for (int k = 0; k < Dim; ++k) {
+    const double of_a = -pull_a[1 + k], of_b = pull_b[1 + k];
+    common[k] = of_a * of_b <= 0 ? 0 : std::abs(of_a) < std::abs(of_b) ? of_a : of_b;
+    area += common[k] * common[k];
+    most += std::max(of_a * of_a, of_b * of_b);
+    along_a += of_a * normal_[k];
+    along_b += of_b * normal_[k];
+  }
+  if (given_normal_) {
+    const double along = along_a * along_b <= 0 ? 0 : std::abs(along_a) < std::abs(along_b) ? along_a : along_b;
+    for (int k = 0; k < Dim; ++k) common[k] = along * normal_[k];
+    area = along * along;
+  }
+  return area > least_agreement * least_agreement * most ? common : Vector<Dim>{};
+}
+
 template <int Dim>
 void BodyContact<Dim>::exchange_at_node(std::size_t node_block, int node, int a, int b, double kick) {
-  const Lane out_of_a = -surface(a).force(node_block)[node], into_b = surface(b).force(node_block)[node];
-  Touch<Dim> touch;
-  double area = 0, most = 0;
-  for (int k = 0; k < Dim; ++k) {
-    const double of_a = out_of_a[1 + k], of_b = into_b[1 + k];
-    touch.out[k] = of_a * of_b <= 0 ? 0 : std::abs(of_a) < std::abs(of_b) ? of_a : of_b;
-    area += touch.out[k] * touch.out[k];
-    most += std::max(of_a * of_a, of_b * of_b);
-  }
+  const Vector<Dim> common = common_surface(surface(a).force(node_block)[node], surface(b).force(node_block)[node]);
+  double area = 0;
+  for (const double component : common) area += component * component;
   area = std::sqrt(area);
-  if (!(area > least_agreement * std::sqrt(most))) return;
-  for (double& component : touch.out) component /= area;
+  if (!(area > 0)) return;
+  Touch<Dim> touch;
+  for (int k = 0; k < Dim; ++k) touch.out[k] = common[k] / area;
   const double mass_a = nodes(a).momentum(node_block)[node][0], mass_b = nodes(b).momentum(node_block)[node][0];
   const double share_a = mass_b / (mass_a + mass_b), share_b = mass_a / (mass_a + mass_b);
   touch.friction = true;

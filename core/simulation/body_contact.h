@@ -53,9 +53,12 @@ class BodyContact {
   using Bodies = std::uint64_t;  // a bit for each
   static bool several(Bodies bodies) { return (bodies & (bodies - 1)) != 0; }
   int body_of(std::int32_t material) const { return body_of_[static_cast<std::size_t>(material)]; }
+  Vector<Dim> common_surface(const Lane& pull_a, const Lane& pull_b) const;
   void exchange_at_node(std::size_t node_block, int node, int a, int b, double kick);
 
   FaceCase law_;
+  bool given_normal_ = false;
+  Vector<Dim> normal_{};      // where it is given
   std::vector<int> body_of_;  // by material
   std::vector<NodeFields<Dim>> nodes_, surface_;
   std::vector<Bodies> bodies_of_nodes_;  // by block of nodes

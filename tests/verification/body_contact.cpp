@@ -168,6 +168,43 @@ TEST(StickingBlock, StaysWithoutFriction) {
   EXPECT_LT(std::abs(way(scene)), 0.01);
 }
 
+// ---- a slope that crosses the cells ----
+
+/// The same by vertical gravity, on a slope of 30 degrees whose surface the particles of both bodies follow in steps.
+SceneText steep(const std::string& normal) {
+  return {.grid = "{min: [0 m, 0 m], max: [5 m, 4 m], cell: 0.125 m}",
+          .material =
+              "{model: linear_elastic, density: 1800 kg/m3, youngs_modulus: 20 MPa, poisson_ratio: 0}\n"
+              "  block: {model: linear_elastic, density: 1800 kg/m3, youngs_modulus: 20 MPa, poisson_ratio: 0}",
+          .bodies =
+              "  - {material: soil, polygon: [[0 m, 0 m], [5 m, 0 m], [5 m, 0.11325 m], [0 m, 3 m]]}\n"
+              "  - {material: block, polygon: [[0.5196 m, 2.7 m], [1.8187 m, 1.95 m], [2.1937 m, 2.5995 m], "
+              "[0.8946 m, 3.3495 m]]}",
+          .gravity = "[0, -9.81 m/s2]",
+          .boundaries = "{left: roller, right: roller, bottom: fixed}",
+          .initial_stress = "{method: elastic_equilibrium}",
+          .more = fmt::format("contact: {{materials: [block], friction: 0.2{}}}\n", normal)};
+}
+
+double way_down(const SceneText& scene) {
+  const auto simulation = simulate(scene);
+  while (simulation->time() < 0.6) simulation->advance(0.6);
+  const Body block = body_of(simulation->particles(), "block");
+  return block.displacement(0) * std::cos(std::atan(1) * 4 / 6) - block.displacement(1) * 0.5;
+}
+
+// s = g (sin - mu cos) t^2 / 2 with the normal of the slope.
+TEST(SteepSlope, SlidesWithTheNormalThatIsGiven) {
+  const double expected = 0.5 * 9.81 * (0.5 - 0.2 * std::sqrt(0.75)) * 0.36;
+  EXPECT_NEAR(way_down(steep(", normal: [1, 1.7320508]")), expected, 0.03 * expected);
+}
+
+// The negative control: normals from particles follow the steps, and the bodies catch on each other.
+TEST(SteepSlope, CatchesOnStepsWithoutIt) {
+  const double expected = 0.5 * 9.81 * (0.5 - 0.2 * std::sqrt(0.75)) * 0.36;
+  EXPECT_LT(way_down(steep("")), 0.7 * expected);
+}
+
 // ---- conservation ----
 
 /// Two discs graze each other. Linear momentum is kept to round-off, and the angular momentum of APIC, which its affine
