@@ -1,6 +1,7 @@
 /// The case: everything that a case file declares, checked, in SI units, with all defaults filled in.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,9 +15,10 @@ namespace sluice {
 
 /// The background grid: a box of uniform cells. `min.size()` is the dimension, 2 (plane strain) or 3.
 struct GridCase {
-  std::vector<double> min;   ///< lower corner [m]
-  std::vector<double> max;   ///< upper corner [m]; max - min is a whole number of cells on each axis
-  std::vector<double> cell;  ///< cell size per axis [m]; a single value in the file means the same on all axes
+  std::vector<double> min;         ///< lower corner [m]
+  std::vector<double> max;         ///< upper corner [m]; max - min is a whole number of cells on each axis
+  std::vector<double> cell;        ///< cell size per axis [m]; a single value in the file means the same on all axes
+  std::array<bool, 3> periodic{};  ///< by axis: both of its faces are periodic
 };
 
 /// A region filled with material points of one material.
@@ -49,6 +51,7 @@ struct FaceCase {
   double adhesion = 0;                          ///< shear traction that needs no pressure [Pa], likewise
   std::vector<Table> velocity = {};             ///< of the face [m/s], Dim components; empty: at rest
   std::optional<AbsorbingCase> absorbing = {};  ///< then it is free otherwise; faces only
+  bool periodic = false;                        ///< the same; what leaves comes in at the face opposite
 };
 
 /// A rigid region inside the grid that keeps material out.
@@ -63,6 +66,15 @@ struct ObstacleCase {
 struct ChangeCase {
   double at = 0;  ///< [s]
   std::string material, becomes;
+  Place place;
+};
+
+/// Bodies that do not stick to each other.
+struct ContactCase {
+  std::vector<std::string> materials;  ///< each a body of its own; all other materials are one more
+  double friction = 0;                 ///< Coulomb coefficient
+  double adhesion = 0;                 ///< shear traction that needs no pressure [Pa]
+  std::vector<double> normal;          ///< of the surfaces, either way round; empty: found from the particles
   Place place;
 };
 
@@ -122,6 +134,7 @@ struct Case {
   Node water;           ///< the same
   Node advice;          ///< read by advisors; they add what they decided as `verdict`
   std::vector<ChangeCase> changes;
+  std::optional<ContactCase> contact;
   SchemeCase scheme;
   OutflowPolicy outflow = OutflowPolicy::error;
   double end_time = 0;  ///< [s]

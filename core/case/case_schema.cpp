@@ -163,7 +163,7 @@ Schema<FaceKeys> face_schema() {
           Absent{"none"});
 }
 
-const std::vector<std::string> face_shorthands{"free", "roller", "fixed"};
+const std::vector<std::string> face_shorthands{"free", "roller", "fixed", "periodic"};
 
 /// What the keys of a section mean; `name` is what messages call it.
 FaceCase surface_of(const FaceKeys& keys, const Node& node, const std::string& name, Problems& problems) {
@@ -211,7 +211,8 @@ FaceCase read_face(const Node& node, const std::string& name, Problems& problems
     return surface_of(schema.read(node, {}, problems), node, "boundaries." + name, problems);
   FaceCase face;
   const auto word = value::word(node, "boundaries." + name, face_shorthands, problems);
-  if (word && *word != "free") face.normal = FaceCase::Normal::fixed;
+  face.periodic = word && *word == "periodic";
+  if (word && *word != "free" && !face.periodic) face.normal = FaceCase::Normal::fixed;
   if (word && *word == "fixed") face.tangential = Tangential::fixed;
   return face;
 }
@@ -249,9 +250,10 @@ Node write_faces(const Case& definition) {
   Node faces = Node::map();
   for (const std::string& name : face_words(definition.dimension())) {
     const auto found = definition.faces.find(name);
+    const FaceCase face = found == definition.faces.end() ? FaceCase{} : found->second;
     Node keys = Node::map();
-    write_surface(found == definition.faces.end() ? FaceCase{} : found->second, keys);
-    faces.set(name, keys);
+    write_surface(face, keys);
+    faces.set(name, face.periodic ? Node::text("periodic") : keys);
   }
   return faces;
 }
@@ -306,6 +308,20 @@ Schema<ChangeCase> change_schema() {
       .text("material", &ChangeCase::material, "Material that gives way.")
       .text("becomes", &ChangeCase::becomes,
             "Material that takes its place; points keep their stress and all other state.");
+}
+
+// ---- contact ----
+
+Schema<ContactCase> contact_schema() {
+  return Schema<ContactCase>("contact")
+      .words("materials", &ContactCase::materials,
+             "Materials that are bodies of their own; all other materials together are one more.")
+      .quantity("friction", &ContactCase::friction, unit::none, at_least(0), "Coulomb coefficient of friction.", 0.0)
+      .quantity("adhesion", &ContactCase::adhesion, unit::stress, at_least(0),
+                "Shear stress that friction may take without pressure.", 0.0)
+      .quantities("normal", &ContactCase::normal, unit::none, any_number, dimensions,
+                  "Normal of the surfaces where these are flat and known, for example a slope; either way round.",
+                  Absent{"found from the particles: for surfaces along the grid"});
 }
 
 // ---- scheme
@@ -477,7 +493,9 @@ Schema<Case> make_case_schema() {
                .type = field_type::named_sections,
                .default_text = "every face free",
                .sentence = "Faces of the grid: left, right, bottom, top, and front, back in 3-D. A word is short for a "
-                           "section: `fixed` fixes all motion, `roller` the normal one, `free` none.",
+                           "section: `fixed` fixes all motion, `roller` the normal one, `free` none. Both faces of an "
+                           "axis may be `periodic`: what leaves through one comes in at the other; the axis then has a "
+                           "multiple of 8 cells in 2-D, of 4 in 3-D.",
                .nested = face_schema().docs(),
                .alternatives = {{.type = field_type::word, .words = face_shorthands}}},
               read_faces, write_faces)
@@ -517,6 +535,9 @@ Schema<Case> make_case_schema() {
           [](Case& definition, const Node& node, Problems&) { definition.advice = node; },
           [](const Case& definition) { return definition.advice; })
       .sections("changes", &Case::changes, change_schema(), "Materials that give way to others during the run.", false)
+      .section("contact", &Case::contact, contact_schema(),
+               "Bodies that do not stick to each other where they touch; for the physics `total_stress`.",
+               Absent{"all bodies stick together"})
       .section("scheme", &Case::scheme, scheme_schema(), "How the equations are discretised.")
       .choice<OutflowPolicy>(
           "outflow", &Case::outflow,

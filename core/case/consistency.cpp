@@ -7,6 +7,7 @@
 
 #include "core/case/case_schema.h"
 #include "core/case/region_schema.h"
+#include "core/grid/geometry.h"
 
 namespace sluice {
 
@@ -27,9 +28,11 @@ class Consistency {
   void run() {
     check_materials_of_bodies();
     check_changes();
+    if (case_.contact) check_contact();
     const bool has_grid = check_grid();
     if (!has_grid) return;
     dimension_ = case_.grid.min.size();
+    if (case_.contact && !case_.contact->normal.empty()) check_normal();
     check_components(case_.gravity, "gravity", case_.source);
     check_faces();
     check_obstacles();
@@ -104,6 +107,33 @@ class Consistency {
     for (const std::string& name : allowed) case_.faces.try_emplace(name);
     for (const auto& [name, face] : case_.faces)
       if (!face.velocity.empty()) check_velocity(face, *section->find(name));
+    for (std::size_t a = 0; a < dimension_; ++a) check_periodic(a, allowed[2 * a], allowed[2 * a + 1]);
+  }
+
+  /// Both faces of an axis are periodic or none, and blocks fit (core/grid/geometry.h).
+  void check_periodic(std::size_t a, const std::string& lower, const std::string& upper) {
+    const bool low = case_.faces[lower].periodic, high = case_.faces[upper].periodic;
+    if (!low && !high) return;
+    const Node& section = *case_.source.find("boundaries");
+    if (low != high) {
+      const std::string &one = low ? lower : upper, &other = low ? upper : lower;
+      problems_.add(place_of(section, one),
+                    fmt::format("boundaries.{0}: periodic, but {1} is not; what leaves through one of them comes in at "
+                                "the other: give `{1}: periodic`, too",
+                                one, other));
+      return;
+    }
+    const GridCase& grid = case_.grid;
+    const int width = dimension_ == 2 ? block_width<2> : block_width<3>;
+    const auto cells = static_cast<int>(std::lround((grid.max[a] - grid.min[a]) / grid.cell[a]));
+    case_.grid.periodic[a] = true;
+    if (cells % width == 0) return;
+    const int below = cells / width * width;
+    const std::string nearest = below == 0 ? std::to_string(width) : fmt::format("{} or {}", below, below + width);
+    problems_.add(place_of(section, lower),
+                  fmt::format("boundaries.{}: a periodic axis needs a multiple of {} cells in {}-D; there are {} along "
+                              "{}; take {}",
+                              lower, width, dimension_, cells, axis_name(a), nearest));
   }
 
   void check_velocity(const FaceCase& face, const Node& section) {
@@ -154,6 +184,33 @@ class Consistency {
         if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
           problems_.add(change.place,
                         fmt::format("changes: unknown material '{}'; {}", name, allowed_words(name, names)));
+  }
+
+  void check_contact() {
+    const Node& section = *case_.source.find("contact");
+    case_.contact->place = section.place;
+    std::vector<std::string> names;
+    for (const auto& [name, material] : case_.materials) names.push_back(name);
+    constexpr std::size_t most = 63;
+    if (case_.contact->materials.empty())
+      problems_.add(place_of(section, "materials"),
+                    "contact: materials: there are none; name those that are bodies of their own");
+    if (case_.contact->materials.size() > most)
+      problems_.add(place_of(section, "materials"), fmt::format("contact: at most {} materials are possible", most));
+    for (const std::string& name : case_.contact->materials)
+      if (std::ranges::find(names, name) == names.end())
+        problems_.add(place_of(section, "materials"),
+                      fmt::format("contact: unknown material '{}'; {}", name, allowed_words(name, names)));
+  }
+
+  void check_normal() {
+    const std::vector<double>& normal = case_.contact->normal;
+    const Place place = place_of(*case_.source.find("contact"), "normal");
+    if (normal.size() != dimension_)
+      problems_.add(place, fmt::format("contact: normal: found {} components; the grid has {} dimensions",
+                                       normal.size(), dimension_));
+    else if (std::ranges::all_of(normal, [](double component) { return component == 0; }))
+      problems_.add(place, "contact: normal: all components are 0");
   }
 
   void check_body(BodyCase& body, const Node& section) {

@@ -12,13 +12,16 @@ namespace sluice {
 namespace {
 
 /// Gives each block a number. Numbers follow the longest axis of the grid slowest: consecutive blocks then form thin
-/// slices, and a sweep over them (core/simulation/sweep.h) has few blocks between a block and its neighbours.
+/// slices, and a sweep over them (core/simulation/sweep.h) has few blocks between a block and its neighbours. Periodic
+/// axes are the fastest: along one of them the last block is a neighbour of the first.
 template <int Dim>
 class Numbering {
  public:
   explicit Numbering(const GridGeometry<Dim>& grid) {
     std::iota(axes_.begin(), axes_.end(), 0);
-    std::stable_sort(axes_.begin(), axes_.end(), [&](int a, int b) { return grid.cells[a] < grid.cells[b]; });
+    std::stable_sort(axes_.begin(), axes_.end(), [&](int a, int b) {
+      return grid.periodic[a] != grid.periodic[b] ? grid.periodic[a] : grid.cells[a] < grid.cells[b];
+    });
   }
   std::int64_t key(const Index<Dim>& block) const {
     std::int64_t key = 0;
@@ -80,10 +83,28 @@ void for_neighbourhood(const Visit& visit) {
   }
 }
 
+/// Brings particles that have crossed an end of a periodic axis back into the grid, and counts it.
+template <int Dim>
+void bring_back(Particles& particles, const GridGeometry<Dim>& grid) {
+  for (int a = 0; a < Dim; ++a) {
+    if (!grid.periodic[a]) continue;
+    double* const x = particles.columns.data(particles.position, a);
+    double* const crossings = particles.columns.data(particles.crossings, a);
+    const double low = grid.min[a], period = grid.max[a] - low;
+    parallel_for(particles.size(), [&](std::size_t p) {
+      const double turns = std::floor((x[p] - low) / period);
+      if (turns == 0) return;
+      x[p] -= turns * period;
+      crossings[p] += turns;
+    });
+  }
+}
+
 }  // namespace
 
 template <int Dim>
 void Blocks<Dim>::sort(Particles& particles, const GridGeometry<Dim>& grid, int reach) {
+  bring_back(particles, grid);
   const std::size_t count = particles.size();
   const Numbering<Dim> numbering(grid);
   const Addresses<Dim> address_of(particles, grid, numbering);
@@ -141,10 +162,12 @@ void Blocks<Dim>::connect(const GridGeometry<Dim>& grid, int reach) {
   const int tile = tile_width<Dim>(reach);
   const Numbering<Dim> numbering(grid);
   std::map<std::int64_t, std::int32_t> slot;  // ordered, so that node blocks are numbered as particle blocks are
-  const auto shifted = [](const ParticleBlock<Dim>& block, const Index<Dim>& shift) {
-    Index<Dim> b;
-    for (int a = 0; a < Dim; ++a) b[a] = block.first_cell[a] / width + shift[a];
-    return b;
+  const auto shifted = [&](const ParticleBlock<Dim>& block, const Index<Dim>& shift) {
+    Index<Dim> cell = block.first_cell;
+    for (int a = 0; a < Dim; ++a) cell[a] += width * shift[a];
+    cell = grid.wrapped(cell);
+    for (int& i : cell) i = i < 0 ? -1 : i / width;
+    return cell;
   };
   for (const auto& block : particle_blocks_)
     for_neighbourhood<Dim>(

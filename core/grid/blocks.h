@@ -3,7 +3,8 @@
 /// The particles are kept sorted by block, then material, then cell. A block of particles works on a tile, a small
 /// dense patch of nodes that covers everything its particles can reach; tiles are summed into blocks of nodes in a
 /// fixed order, so results do not depend on the number of threads. Memory and time are proportional to the blocks in
-/// use.
+/// use. Along a periodic axis the blocks at both ends are neighbours; nothing else knows of the seam but a block that
+/// is alone on such an axis, which is its own neighbour.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +41,8 @@ struct NodeBlock {
 template <int Dim>
 class Blocks {
  public:
-  /// Sorts the particles and finds the active blocks. `reach` is that of the shape functions.
+  /// Sorts the particles and finds the active blocks. `reach` is that of the shape functions. Particles beyond the ends
+  /// of periodic axes are brought back first.
   void sort(Particles& particles, const GridGeometry<Dim>& grid, int reach);
 
   /// Forgets all blocks, when the particles have changed otherwise than by moving: the next step sorts.

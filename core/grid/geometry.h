@@ -1,6 +1,7 @@
 /// The uniform background grid: its box, its cells, and how it is cut into blocks.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -33,11 +34,39 @@ constexpr int tile_width(int reach) {
 }
 
 /// The grid of a scene. Cells are half-open, [x_i, x_{i+1}). With shape functions of reach r an axis of n cells has
-/// n + r nodes (control points); cell i reaches nodes i … i + r.
+/// n + r nodes (control points); cell i reaches nodes i … i + r. A periodic axis has n nodes, as it has n vertices of
+/// cells: number n is number 0 again. It is a whole number of blocks.
 template <int Dim>
 struct GridGeometry {
   Vector<Dim> min{}, max{}, cell{};
   Index<Dim> cells{};
+  std::array<bool, Dim> periodic{};  ///< the axis begins anew beyond its last cell
+
+  bool any_periodic() const { return std::find(periodic.begin(), periodic.end(), true) != periodic.end(); }
+  /// The number that a cell, vertex or node beyond the ends of a periodic axis has inside.
+  Index<Dim> wrapped(Index<Dim> place) const {
+    for (int a = 0; a < Dim; ++a)
+      if (periodic[a]) place[a] = (place[a] % cells[a] + cells[a]) % cells[a];
+    return place;
+  }
+  /// The grid as shape functions see it: a periodic axis goes on for a block beyond both of its ends, so that no wall
+  /// is near, and a particle that has crossed an end since the last sort is where it is.
+  GridGeometry unrolled() const {
+    GridGeometry g = *this;
+    for (int a = 0; a < Dim; ++a) {
+      g.min[a] -= first_inside()[a] * cell[a];
+      g.max[a] += first_inside()[a] * cell[a];
+      g.cells[a] += 2 * first_inside()[a];
+      g.periodic[a] = false;
+    }
+    return g;
+  }
+  /// The number that cell 0 has in the unrolled grid.
+  Index<Dim> first_inside() const {
+    Index<Dim> first{};
+    for (int a = 0; a < Dim; ++a) first[a] = periodic[a] ? block_width<Dim> : 0;
+    return first;
+  }
 
   double smallest_cell() const {
     double h = cell[0];

@@ -6,8 +6,8 @@ namespace sluice {
 
 template <int Dim>
 Obstacles<Dim>::Obstacles(const std::vector<ObstacleCase>& obstacles, std::array<std::vector<double>, Dim> places,
-                          double support)
-    : places_(std::move(places)) {
+                          double support, const Vector<Dim>& low, const Vector<Dim>& period)
+    : places_(std::move(places)), low_(low), period_(period) {
   for (const ObstacleCase& definition : obstacles)
     obstacles_.push_back({definition, {}, {}, definition.region.bounds(Dim)});
   // Cells are uniform, nodes are not quite: some shape functions have their outermost nodes on the walls.
@@ -62,10 +62,25 @@ Vector<Dim> Obstacles<Dim>::place(const Index<Dim>& node) const {
   return x;
 }
 
+/// Along periodic axes the obstacle is repeated: the nearest of its images counts.
 template <int Dim>
 SignedDistance Obstacles<Dim>::where(const Obstacle& obstacle, Vector<Dim> x) const {
-  for (int a = 0; a < Dim; ++a) x[a] -= obstacle.travel[a];
-  return obstacle.definition.region.signed_distance(x);
+  int images = 1;
+  for (int a = 0; a < Dim; ++a) {
+    x[a] -= obstacle.travel[a];
+    if (period_[a] <= 0) continue;
+    x[a] -= std::floor((x[a] - low_[a]) / period_[a]) * period_[a];
+    images *= 3;
+  }
+  SignedDistance nearest;
+  for (int n = 0; n < images; ++n) {
+    Vector<Dim> image = x;
+    for (int a = 0, rest = n; a < Dim; ++a)
+      if (period_[a] > 0) image[a] += (rest % 3 - 1) * period_[a], rest /= 3;
+    const SignedDistance here = obstacle.definition.region.signed_distance(image);
+    if (n == 0 || here.distance < nearest.distance) nearest = here;
+  }
+  return nearest;
 }
 
 /// The nodes [first, second) of the grid that a block has, and that particles reach. The margins of tiles go beyond it.
@@ -85,6 +100,7 @@ bool Obstacles<Dim>::near(const Obstacle& obstacle, const NodeBlock<Dim>& nodes,
   const auto [low, high] = range(nodes);
   for (int a = 0; a < Dim; ++a) {
     if (low[a] >= high[a]) return false;
+    if (period_[a] > 0) continue;
     const auto axis = static_cast<std::size_t>(a);
     const double first = places_[a][static_cast<std::size_t>(low[a])] - obstacle.travel[a];
     const double last = places_[a][static_cast<std::size_t>(high[a] - 1)] - obstacle.travel[a];

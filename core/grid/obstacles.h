@@ -18,8 +18,9 @@ template <int Dim>
 class Obstacles {
  public:
   /// `places`: where the nodes of each axis stand [m]. `support`: how far from its node a shape function goes, in
-  /// cells.
-  Obstacles(const std::vector<ObstacleCase>& obstacles, std::array<std::vector<double>, Dim> places, double support);
+  /// cells. `low`: lower ends of the axes [m]; `period`: lengths of those that are periodic [m], 0 for the others.
+  Obstacles(const std::vector<ObstacleCase>& obstacles, std::array<std::vector<double>, Dim> places, double support,
+            const Vector<Dim>& low = {}, const Vector<Dim>& period = {});
 
   bool any() const { return !obstacles_.empty(); }
   bool any_friction() const;
@@ -76,6 +77,7 @@ class Obstacles {
 
   std::vector<Obstacle> obstacles_;
   std::array<std::vector<double>, Dim> places_;
+  Vector<Dim> low_, period_;        ///< [m]
   Vector<Dim> support_{};           ///< of a shape function along each axis [m]
   double hair_ = 0;                 ///< a node this close to the surface is in the obstacle [m]
   std::int64_t version_ = 0;        ///< of the places of the obstacles

@@ -31,9 +31,10 @@ std::vector<double> interleaved(const Columns& columns, ColumnId id, int compone
 }
 
 std::vector<double> displacements(const Particles& particles) {
-  std::vector<double> values = interleaved(particles.columns, particles.position, point_dimension);
-  const auto initial = interleaved(particles.columns, particles.initial_position, point_dimension);
-  std::transform(values.begin(), values.end(), initial.begin(), values.begin(), std::minus<>());
+  std::vector<double> values(particles.size() * point_dimension, 0.0);
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    for (int k = 0; k < particles.dimension; ++k)
+      values[i * point_dimension + static_cast<std::size_t>(k)] = particles.displacement(i, k);
   return values;
 }
 
@@ -68,7 +69,8 @@ std::vector<FieldSpec> result_fields(const Particles& particles) {
     if (spec.role != Role::state || !spec.output || static_cast<int>(c) == particles.position.index) continue;
     fields.push_back({spec.name, spec.unit, spec.sentence, stored_components(spec, particles.dimension), false});
   }
-  fields.push_back({"displacement", "m", "Position minus initial position.", point_dimension, false});
+  fields.push_back({"displacement", "m", "Position minus initial position, along periodic axes with every turn.",
+                    point_dimension, false});
   fields.push_back({"material", "1", "Index into /Sluice/material_names.", 1, true});
   fields.push_back({"id", "1", "Identity of the particle, the same at all times.", 1, true});
   std::sort(fields.begin(), fields.end(), [](const auto& a, const auto& b) { return a.name < b.name; });

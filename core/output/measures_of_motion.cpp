@@ -11,11 +11,18 @@ namespace sluice {
 
 namespace {
 
-/// Component of a vector column along a direction.
-double along(const Particles& particles, ColumnId column, std::size_t particle, std::span<const double> direction) {
+/// The place of a particle along a direction [m], as if periodic axes had no ends.
+double along(const Particles& particles, std::size_t particle, std::span<const double> direction) {
   double sum = 0;
   for (std::size_t k = 0; k < direction.size(); ++k)
-    sum += particles.columns.data(column, static_cast<int>(k))[particle] * direction[k];
+    sum += particles.unrolled_position(particle, static_cast<int>(k)) * direction[k];
+  return sum;
+}
+
+double start_along(const Particles& particles, std::size_t particle, std::span<const double> direction) {
+  double sum = 0;
+  for (std::size_t k = 0; k < direction.size(); ++k)
+    sum += particles.columns.data(particles.initial_position, static_cast<int>(k))[particle] * direction[k];
   return sum;
 }
 
@@ -38,8 +45,7 @@ class MeanDisplacement : public Observation {
     double moment = 0, total = 0;
     for (std::size_t i = 0; i < particles.size(); ++i) {
       if (!material_.contains(particles, i)) continue;
-      moment += mass[i] * (along(particles, particles.position, i, direction_) -
-                           along(particles, particles.initial_position, i, direction_));
+      moment += mass[i] * (along(particles, i, direction_) - start_along(particles, i, direction_));
       total += mass[i];
     }
     return moment / total;  // not a number once all of it has left
@@ -58,7 +64,7 @@ class CenterOfMass : public Observation {
     const double* mass = particles.columns.data(particles.mass);
     double moment = 0, total = 0;
     for (std::size_t i = 0; i < particles.size(); ++i) {
-      moment += mass[i] * along(particles, particles.position, i, direction_);
+      moment += mass[i] * along(particles, i, direction_);
       total += mass[i];
     }
     return moment / total;

@@ -1,5 +1,6 @@
 #include "core/particles/particles.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace sluice {
@@ -18,6 +19,12 @@ Particles::Particles(int dim) : dimension(dim) {
   volume = columns.declare({"volume", dim == 2 ? "m2" : "m3", 1, Role::state, "Current volume" + per_metre});
   stress = columns.declare(
       {"stress", "Pa", tensor, Role::state, "Cauchy stress, tension positive; components " + tensor_order + "."});
+}
+
+void Particles::declare_periodic(std::span<const double> lengths) {
+  std::copy(lengths.begin(), lengths.end(), period_.begin());
+  crossings = columns.declare({"crossings", "1", dimension, Role::state,
+                               "Crossings of periodic axes, counted positive where the axis points."});
 }
 
 void Particles::resize(std::size_t size) {

@@ -81,6 +81,7 @@ std::size_t apply_outflow(Scene<Dim>& scene, OutflowPolicy policy) {
   for (std::size_t p = 0; p < ps.size(); ++p) {
     bool inside = true;
     for (int a = 0; a < Dim; ++a) {
+      if (scene.grid.periodic[a]) continue;
       double& x = ps.columns.data(ps.position, a)[p];
       double& v = ps.columns.data(ps.velocity, a)[p];
       const double low = scene.grid.min[a], high = scene.grid.max[a], tolerance = 1e-9 * scene.grid.cell[a];

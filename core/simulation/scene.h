@@ -12,6 +12,7 @@
 #include "core/grid/nodes.h"
 #include "core/grid/obstacles.h"
 #include "core/particles/particles.h"
+#include "core/simulation/body_contact.h"
 #include "core/simulation/stage_clock.h"
 #include "core/transfer/shape_kernels.h"
 #include "core/transfer/transfer_scheme.h"
@@ -23,7 +24,8 @@ struct Scene {
   explicit Scene(const Case& definition);
 
   GridGeometry<Dim> grid;
-  Vector<Dim> gravity{};  ///< [m/s2]
+  GridGeometry<Dim> unrolled;  ///< as the kernels see it
+  Vector<Dim> gravity{};       ///< [m/s2]
   std::unique_ptr<ShapeKernels<Dim>> shape;
   TransferScheme transfer;
   SchemeCase scheme;
@@ -36,6 +38,7 @@ struct Scene {
   ColumnId unit_pressure;  ///< declared where the area is wanted
   Blocks<Dim> blocks;
   NodeFields<Dim> nodes;
+  std::unique_ptr<BodyContact<Dim>> contact;  ///< of bodies that do not stick together, or null
   NodeFields<Dim> surface;  ///< area of the surface of the material by node, its forces; only where wanted
 
   double time = 0;         ///< [s]
@@ -59,6 +62,14 @@ struct Scene {
   bool any_friction() const { return faces.any_friction() || obstacles.any_friction(); }
   /// Whether anything asks for the area of the surface of the material.
   bool wants_area() const { return faces.any_adhesion() || obstacles.any_adhesion() || dashpots.any(); }
+  /// The particles of a block under unit pressure: their forces are the area of the surface of the material.
+  ScatterInput<Dim> surface_input(const ParticleBlock<Dim>& block) const;
+
+  /// Shape functions at a point, and where a node stands along an axis, by the numbers that nodes have in the grid.
+  Stencil<Dim> stencil(const Vector<Dim>& x, std::span<const double> domain_numbers) const;
+  double node_position(int axis, int node) const {
+    return shape->node_position(unrolled, axis, node + grid.first_inside()[static_cast<std::size_t>(axis)]);
+  }
 
   BlockParticles<Dim> view(const ParticleBlock<Dim>& block) const;
   /// The affine columns are null when the transfer is not affine.

@@ -14,13 +14,54 @@ bool activate_blocks(Scene<Dim>& scene) {
   return true;
 }
 
+namespace {
+
+/// The particles of a block to the nodes of their bodies; where other bodies are near, the surfaces, too. A body of
+/// several materials may have several runs of particles: the first fills the tile, the others are added to it.
+template <int Dim>
+void scatter_bodies(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std::size_t b) {
+  thread_local std::array<LaneArray, 2> scratch;
+  BodyContact<Dim>& contact = *scene.contact;
+  const ParticleBlock<Dim>& block = scene.blocks.particle_blocks()[b];
+  const std::size_t size = scene.nodes.tile_size();
+  for (LaneArray& tile : scratch) tile.resize(size);
+  std::uint64_t begun = 0;
+  contact.for_runs(scene.blocks, block, [&](int body, std::uint32_t begin, std::uint32_t end) {
+    const bool first = (begun >> body & 1) == 0;
+    begun |= std::uint64_t{1} << body;
+    const auto run = [&](ScatterInput<Dim> in, ScatterWhat which, NodeFields<Dim>& fields) {
+      in.particles.begin = begin, in.particles.end = end;
+      const auto add = [&](Lane* tile, const Lane* more) {
+        for (std::size_t n = 0; n < size; ++n) tile[n] += more[n];
+      };
+      scene.shape->scatter(which, in, impulse_dt, first ? fields.momentum_tile(b) : scratch[0].data(),
+                           first ? fields.force_tile(b) : scratch[1].data());
+      const bool both = which == ScatterWhat::momentum_and_force;
+      if (!first && which != ScatterWhat::force) add(fields.momentum_tile(b), scratch[0].data());
+      if (!first && (both || which == ScatterWhat::force)) add(fields.force_tile(b), scratch[1].data());
+    };
+    run(scene.scatter_input(block), what, contact.nodes(body));
+    if (what != ScatterWhat::momentum && contact.at_others(b))
+      run(scene.surface_input(block), ScatterWhat::force, contact.surface(body));
+  });
+}
+
+}  // namespace
+
+template <int Dim>
+void scatter_block(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std::size_t b) {
+  if (scene.contact != nullptr)
+    scatter_bodies(scene, what, impulse_dt, b);
+  else
+    scene.shape->scatter(what, scene.scatter_input(scene.blocks.particle_blocks()[b]), impulse_dt,
+                         scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
+}
+
 template <int Dim>
 void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, Items some) {
   const auto timing = scene.clock.time(Stage::scatter);
-  parallel_for(some.within(scene.blocks.particle_blocks().size()), [&](std::size_t b) {
-    scene.shape->scatter(what, scene.scatter_input(scene.blocks.particle_blocks()[b]), impulse_dt,
-                         scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
-  });
+  parallel_for(some.within(scene.blocks.particle_blocks().size()),
+               [&](std::size_t b) { scatter_block(scene, what, impulse_dt, b); });
 }
 
 template <int Dim>
@@ -28,10 +69,7 @@ void scatter_surface(Scene<Dim>& scene, Items some) {
   const auto timing = scene.clock.time(Stage::scatter);
   parallel_for(some.within(scene.blocks.particle_blocks().size()), [&](std::size_t b) {
     const ParticleBlock<Dim>& block = scene.blocks.particle_blocks()[b];
-    ScatterInput<Dim> in = scene.scatter_input(block);
-    for (int c = 0; c < symmetric_components<Dim>; ++c)
-      in.stress[c] = scene.particles.columns.data(scene.unit_pressure, c < Dim ? 0 : 1);
-    scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, scene.surface.force_tile(b));
+    scene.shape->scatter(ScatterWhat::force, scene.surface_input(block), 0, nullptr, scene.surface.force_tile(b));
   });
 }
 
@@ -106,15 +144,32 @@ void divide_by_mass(const NodeBlock<Dim>& nodes, const Lane* momentum, Lane* mot
   accelerate<Dim>(nodes, momentum, nullptr, 0, {}, 0, motion);
 }
 
+namespace {
+
+/// Calls body(fields) for the fields of a block of nodes: those of the scene, or of each body that is there.
+template <int Dim, class Body>
+void for_fields(Scene<Dim>& scene, std::size_t node_block, const Body& body) {
+  if (scene.contact == nullptr) {
+    body(scene.nodes);
+    return;
+  }
+  for (int g = 0; g < scene.contact->bodies(); ++g)
+    if (scene.contact->has(node_block, g)) body(scene.contact->nodes(g));
+}
+
+}  // namespace
+
 template <int Dim>
 void velocity_from_momentum(Scene<Dim>& scene, Moment moment, Items some) {
   const auto timing = scene.clock.time(Stage::nodes);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
-    scene.nodes.collect_momentum(scene.blocks, b);
-    divide_by_mass<Dim>(block, scene.nodes.momentum(b), scene.nodes.motion(b));
-    scene.obstacles.fix(block, b, scene.nodes.momentum(b), scene.nodes.motion(b), moment);
-    scene.faces.fix(block, scene.nodes.motion(b), moment);
+    for_fields(scene, b, [&](NodeFields<Dim>& nodes) {
+      nodes.collect_momentum(scene.blocks, b);
+      divide_by_mass<Dim>(block, nodes.momentum(b), nodes.motion(b));
+      scene.obstacles.fix(block, b, nodes.momentum(b), nodes.motion(b), moment);
+      scene.faces.fix(block, nodes.motion(b), moment);
+    });
   });
 }
 
@@ -122,10 +177,10 @@ namespace {
 
 /// What faces and obstacles do to the new velocities of a block. Faces come last: nothing may pass them.
 template <int Dim>
-void impose_boundaries(Scene<Dim>& scene, std::size_t b, double kick, double lightest,
+void impose_boundaries(Scene<Dim>& scene, NodeFields<Dim>& nodes, std::size_t b, double kick, double lightest,
                        NodeFields<Dim>* without_friction) {
   const auto& block = scene.blocks.node_blocks()[b];
-  const Lane* const momentum = scene.nodes.momentum(b);
+  const Lane* const momentum = nodes.momentum(b);
   std::array<Lane, block_nodes<Dim>> relief, area;
   Beside beside;
   // Velocities, or velocities per Pascal, from forces.
@@ -139,9 +194,9 @@ void impose_boundaries(Scene<Dim>& scene, std::size_t b, double kick, double lig
   };
   if (without_friction != nullptr) beside.relief = take(*without_friction, 1, relief);
   if (scene.wants_area()) beside.area = take(scene.surface, -1, area);
-  scene.dashpots.impose(block, scene.nodes.motion(b), beside.area, kick, scene.step == 0);
-  scene.obstacles.fix_with_friction(block, b, momentum, scene.nodes.motion(b), beside, kick);
-  scene.faces.fix_with_friction(block, scene.nodes.motion(b), beside);
+  scene.dashpots.impose(block, nodes.motion(b), beside.area, kick, scene.step == 0);
+  scene.obstacles.fix_with_friction(block, b, momentum, nodes.motion(b), beside, kick);
+  scene.faces.fix_with_friction(block, nodes.motion(b), beside);
 }
 
 }  // namespace
@@ -153,11 +208,15 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
   const double lightest = lightest_node(scene);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
-    if (collect_momentum) scene.nodes.collect_momentum(scene.blocks, b);
-    if (collect_force) scene.nodes.collect_force(scene.blocks, b);
-    accelerate<Dim>(block, scene.nodes.momentum(b), collect_force ? scene.nodes.force(b) : nullptr, kick, scene.gravity,
-                    lightest, scene.nodes.motion(b));
-    impose_boundaries(scene, b, kick, lightest, without_friction);
+    for_fields(scene, b, [&](NodeFields<Dim>& nodes) {
+      if (collect_momentum) nodes.collect_momentum(scene.blocks, b);
+      if (collect_force) nodes.collect_force(scene.blocks, b);
+      accelerate<Dim>(block, nodes.momentum(b), collect_force ? nodes.force(b) : nullptr, kick, scene.gravity, lightest,
+                      nodes.motion(b));
+    });
+    if (scene.contact != nullptr) scene.contact->exchange(scene.blocks, b, kick, lightest);
+    for_fields(scene, b,
+               [&](NodeFields<Dim>& nodes) { impose_boundaries(scene, nodes, b, kick, lightest, without_friction); });
   });
 }
 
@@ -170,7 +229,7 @@ void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_fric
     const Lane* const momentum = scene.nodes.momentum(b);
     scene.nodes.add_force(scene.blocks, b);
     accelerate<Dim>(block, momentum, scene.nodes.force(b), kick, scene.gravity, lightest, scene.nodes.motion(b));
-    impose_boundaries(scene, b, kick, lightest, without_friction);
+    impose_boundaries(scene, scene.nodes, b, kick, lightest, without_friction);
   });
 }
 
@@ -221,6 +280,7 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
 
 #define SLUICE_INSTANTIATE(Dim)                                                               \
   template bool activate_blocks<Dim>(Scene<Dim>&);                                            \
+  template void scatter_block<Dim>(Scene<Dim>&, ScatterWhat, double, std::size_t);            \
   template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);                        \
   template void divide_by_mass<Dim>(const NodeBlock<Dim>&, const Lane*, Lane*);               \
   template void velocity_from_momentum<Dim>(Scene<Dim>&, Moment, Items);                      \

@@ -29,6 +29,9 @@ bool activate_blocks(Scene<Dim>& scene);
 /// Particles to nodes, eqs. (14)-(16): fills the tiles of the blocks.
 template <int Dim>
 void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt = 0, Items some = everything);
+/// The same for one block, to be called in parallel.
+template <int Dim>
+void scatter_block(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std::size_t b);
 
 /// v = p / m on one block, dv = 0.
 template <int Dim>
@@ -69,6 +72,23 @@ void for_each_block(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, 
 /// One workspace a thread, each large enough for any block.
 template <int Dim>
 void prepare(const Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces);
+
+/// Calls gather(particles, first) for the particles of a block, with the motion of their nodes in `tile`; `first` is
+/// the number of the first of them in the block. Bodies that do not stick together come one after the other.
+template <int Dim, class Gather>
+void from_nodes(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile, const Gather& gather) {
+  if (scene.contact == nullptr) {
+    scene.nodes.load_motion(scene.blocks, b, tile);
+    gather(scene.view(block), 0u);
+    return;
+  }
+  scene.contact->for_runs(scene.blocks, block, [&](int body, std::uint32_t begin, std::uint32_t end) {
+    scene.contact->nodes(body).load_motion(scene.blocks, b, tile);
+    BlockParticles<Dim> run = scene.view(block);
+    run.begin = begin, run.end = end;
+    gather(run, begin - block.begin);
+  });
+}
 
 /// Nodes to particles: velocity, position, affine field, eqs. (19)-(21). Positions go to `position_column`, domains
 /// that deform to `domain_column`; without a column they stay as they are.

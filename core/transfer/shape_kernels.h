@@ -4,6 +4,7 @@
 /// virtual: one call a block of some hundred particles. Each shape function is one file that registers its kernels.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <memory>
@@ -27,6 +28,13 @@ template <int Dim>
 struct StrainIncrements {
   std::array<double*, symmetric_components<Dim>> strain;
   std::array<double*, spin_components<Dim>> rotation;
+
+  StrainIncrements from(std::uint32_t particle) const {
+    StrainIncrements rest = *this;
+    for (double*& column : rest.strain) column += particle;
+    for (double*& column : rest.rotation) column += particle;
+    return rest;
+  }
 };
 
 /// Most numbers that say what part of space a particle stands for: the corners of a cell, as vectors.
@@ -97,6 +105,14 @@ struct MotionReport {
   double largest_strain_rate = 0;    ///< largest absolute component, spin included [1/s]; 0 if none was asked for
   bool finite = true;                ///< all velocities are finite
   bool inside = true;                ///< all positions are inside the grid
+
+  void include(const MotionReport& other) {
+    largest_speed_squared = std::max(largest_speed_squared, other.largest_speed_squared);
+    largest_travel = std::max(largest_travel, other.largest_travel);
+    largest_strain_rate = std::max(largest_strain_rate, other.largest_strain_rate);
+    finite = finite && other.finite;
+    inside = inside && other.inside;
+  }
 };
 
 /// The nodes around one point, their values and gradients: for assembly of matrices, not for hot loops.

@@ -242,6 +242,9 @@ std::vector<double> k0_of_materials(const InitialStress& initial, const Scene<Di
 
 template <int Dim>
 void require_vertical_gravity(const InitialStress& initial, const Scene<Dim>& scene) {
+  if (scene.grid.periodic[Dim - 1])
+    throw CaseError(initial.place,
+                    "initial_stress: `method: k0` needs a top and a bottom, but these faces are periodic");
   bool vertical = scene.gravity[Dim - 1] < 0;
   for (int a = 0; a < Dim - 1; ++a) vertical = vertical && scene.gravity[a] == 0;
   if (!vertical)

@@ -146,7 +146,7 @@ void ExternalPressure<Dim>::load(const Index<Dim>& first_cell, double t, Lane* t
   for (int n = 0; n < power(width, Dim); ++n) {
     Index<Dim> place;
     for (int a = 0, rest = n; a < Dim; ++a, rest /= width) place[a] = first_cell[a] - tile_margin + rest % width;
-    tile[n * motion_lanes<Dim>] = Lane{at(grid_.vertex(place), t), 0, 0, 0};
+    tile[n * motion_lanes<Dim>] = Lane{at(grid_.vertex(grid_.wrapped(place)), t), 0, 0, 0};
   }
 }
 

@@ -81,9 +81,11 @@ void StressUpdate<Dim>::move(Scene<Dim>& scene, double dt, ColumnId positions, C
   const auto timing = scene.clock.time(Stage::gather);
   const MotionUpdate<Dim> update = motion_update(scene, dt, positions, domains);
   const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
-    scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
     const double strain_rate = motion_[b].largest_strain_rate;  // of the stress update, if that came first
-    motion_[b] = scene.shape->gather_motion(scene.view(block), work.motion_tile.data(), update);
+    motion_[b] = {};
+    from_nodes(scene, b, block, work.motion_tile.data(), [&](const BlockParticles<Dim>& particles, std::uint32_t) {
+      motion_[b].include(scene.shape->gather_motion(particles, work.motion_tile.data(), update));
+    });
     motion_[b].largest_strain_rate = strain_rate;
   };
   for_each_block(scene, workspaces_, body, some);
@@ -95,11 +97,15 @@ void StressUpdate<Dim>::move_and_strain(Scene<Dim>& scene, double dt, Items some
   const MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position, scene.domain);
   const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     const StrainIncrements<Dim> strain = f_bar_ ? kept_strain(scene, block.begin) : work.strain;
-    MotionUpdate<Dim> own = update;
-    own.strain = &strain;
     if (f_bar_) cells_.locate(scene.view(block));
-    scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
-    motion_[b] = scene.shape->gather_motion(scene.view(block), work.motion_tile.data(), own);
+    motion_[b] = {};
+    from_nodes(scene, b, block, work.motion_tile.data(),
+               [&](const BlockParticles<Dim>& particles, std::uint32_t first) {
+                 MotionUpdate<Dim> own = update;
+                 const StrainIncrements<Dim> of_run = strain.from(first);
+                 own.strain = &of_run;
+                 motion_[b].include(scene.shape->gather_motion(particles, work.motion_tile.data(), own));
+               });
     if (f_bar_)
       add_to_cells(scene, b, block, work);
     else
@@ -113,8 +119,12 @@ void StressUpdate<Dim>::strain(Scene<Dim>& scene, double dt, const AfterBlock& a
   const auto timing = scene.clock.time(Stage::stress);
   const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     const StrainIncrements<Dim> strain = f_bar_ ? kept_strain(scene, block.begin) : work.strain;
-    scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
-    const double largest = scene.shape->gather_strain(scene.view(block), work.motion_tile.data(), dt, strain);
+    double largest = 0;
+    from_nodes(
+        scene, b, block, work.motion_tile.data(), [&](const BlockParticles<Dim>& particles, std::uint32_t first) {
+          largest =
+              std::max(largest, scene.shape->gather_strain(particles, work.motion_tile.data(), dt, strain.from(first)));
+        });
     motion_[b].largest_strain_rate = dt > 0 ? largest / dt : 0;
     if (f_bar_) {
       cells_.locate(scene.view(block));
@@ -196,13 +206,7 @@ void StressUpdate<Dim>::begin_step(const Scene<Dim>& scene) {
 template <int Dim>
 void StressUpdate<Dim>::end_step(Scene<Dim>& scene) {
   MotionReport all;
-  for (const MotionReport& r : motion_) {
-    all.largest_speed_squared = std::max(all.largest_speed_squared, r.largest_speed_squared);
-    all.largest_travel = std::max(all.largest_travel, r.largest_travel);
-    all.largest_strain_rate = std::max(all.largest_strain_rate, r.largest_strain_rate);
-    all.finite = all.finite && r.finite;
-    all.inside = all.inside && r.inside;
-  }
+  for (const MotionReport& r : motion_) all.include(r);
   scene.motion = all;
   scene.travelled += all.largest_travel;
 

@@ -92,7 +92,7 @@ Stencil<Dim> stencil_at(const Scene<Dim>& scene, std::size_t p) {
   const auto components = static_cast<std::size_t>(scene.domain_components());
   for (std::size_t c = 0; c < components; ++c)
     domain[c] = scene.particles.columns.data(scene.domain, static_cast<int>(c))[p];
-  return scene.shape->stencil(scene.grid, x, {domain.data(), components});
+  return scene.stencil(x, {domain.data(), components});
 }
 
 /// "(3.5, 2) m": where the node of an unknown is.
@@ -105,8 +105,7 @@ std::string place_of(const Scene<Dim>& scene, const Unknowns<Dim>& unknowns, int
       for (int a = 0; a < Dim; ++a) node[a] += n / power(block_width<Dim>, a) % block_width<Dim>;
       const auto own = unknowns.find(node);
       if (std::find(own.begin(), own.end(), unknown) == own.end()) continue;
-      for (int a = 0; a < Dim; ++a)
-        place.push_back(fmt::format("{:.4g}", scene.shape->node_position(scene.grid, a, node[a])));
+      for (int a = 0; a < Dim; ++a) place.push_back(fmt::format("{:.4g}", scene.node_position(a, node[a])));
       return fmt::format("({}) m", fmt::join(place, ", "));
     }
   return "nowhere";

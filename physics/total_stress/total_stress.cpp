@@ -28,11 +28,41 @@ const Case& without_water(const Case& definition) {
   return definition;
 }
 
+/// What does not go with bodies that do not stick together.
+void check_contact(const Case& definition) {
+  if (!definition.contact) return;
+  Problems problems;
+  const auto refuse = [&](const std::string& what, const std::string& instead) {
+    problems.add(definition.contact->place, fmt::format("contact: it does not go with {}; {}", what, instead));
+  };
+  const SchemeCase& scheme = definition.scheme;
+  if (scheme.integration != "explicit")
+    refuse("`integration: " + scheme.integration + "`", "take `integration: explicit`");
+  if (scheme.stress_update != "usl")
+    refuse("`stress_update: " + scheme.stress_update + "`", "it gains energy where bodies meet; take usl");
+  if (scheme.transfer == "xpic") refuse("`transfer: xpic`", "take flip, apic or tpic");
+  if (scheme.f_bar) refuse("`f_bar: true`", "cells that two bodies share would have one volume change");
+  if (!definition.obstacles.empty()) refuse("`obstacles`", "make the obstacle a stiff body, or a face");
+  if (definition.surface_loads) refuse("`surface_loads`", "load the bodies by weight or by faces that move");
+  for (const auto& [name, face] : definition.faces)
+    if (face.absorbing || face.adhesion > 0)
+      refuse(fmt::format("`{}` of boundaries.{}", face.absorbing ? "absorbing" : "adhesion", name),
+             "take free, roller, fixed or friction");
+  problems.throw_if_any();
+}
+
+/// The case, if nothing in it is unknown here. Throws CaseError.
+const Case& checked(const Case& definition) {
+  without_water(definition);
+  check_contact(definition);
+  return definition;
+}
+
 }  // namespace
 
 template <int Dim>
 TotalStress<Dim>::TotalStress(const Case& definition)
-    : stress_(without_water(definition)),
+    : stress_(checked(definition)),
       implicit_(definition),
       initial_stress_(read_initial_stress(definition.initial_stress)),
       loads_(read_surface_loads(definition)),
@@ -203,11 +233,11 @@ void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim
 template <int Dim>
 void TotalStress<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                                       Workspace<Dim>& work, ScatterWhat what) {
-  ScatterInput<Dim> in = scene.scatter_input(block);
   if (!outside_.any()) {
-    scene.shape->scatter(what, in, 0, scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
+    scatter_block(scene, what, 0, b);
     return;
   }
+  ScatterInput<Dim> in = scene.scatter_input(block);
   Columns& columns = scene.particles.columns;
   pressed_.take(scene, block, work.motion_tile.data(), outside_);
   const double* here = pressed_.pressure(scene.particles);

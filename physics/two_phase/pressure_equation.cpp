@@ -82,7 +82,7 @@ void PressureEquation<Dim>::rebuild(const Scene<Dim>& scene) {
       Index<Dim> place = scene.blocks.particle_blocks()[b].first_cell;
       for (int a = 0, rest = static_cast<int>(n); a < Dim; ++a, rest /= cell_tile_width<Dim>)
         place[a] += rest % cell_tile_width<Dim> - tile_margin;
-      places.push_back(place);
+      places.push_back(geometry_.wrapped(place));
     }
   }
   if (places.empty()) return;
@@ -256,7 +256,12 @@ typename PressureEquation<Dim>::Crossing PressureEquation<Dim>::crossing(std::si
   const Vector<Dim> from = geometry_.vertex(grid_.vertices()[inside].place),
                     to = geometry_.vertex(grid_.vertices()[neighbour].place);
   Vector<Dim> x;
-  for (int a = 0; a < Dim; ++a) x[a] = from[a] + share * (to[a] - from[a]);
+  for (int a = 0; a < Dim; ++a) {
+    double step = to[a] - from[a];
+    const double period = geometry_.max[a] - geometry_.min[a];
+    if (geometry_.periodic[a]) step -= std::round(step / period) * period;
+    x[a] = from[a] + share * step;
+  }
   return {share, outside.of_ponds(x, time)};
 }
 

@@ -69,29 +69,32 @@ std::int32_t PressureGrid<Dim>::Numbers::find(const Index<Dim>& place) const {
 
 template <int Dim>
 void PressureGrid<Dim>::build(const std::vector<Index<Dim>>& wet, const GridGeometry<Dim>& grid) {
-  number_cells(wet, grid);
+  geometry_ = grid;
+  number_cells(wet);
   number_vertices();
-  link_vertices(grid);
+  link_vertices();
   make_pattern();
   find_runs();
 }
 
 template <int Dim>
-void PressureGrid<Dim>::number_cells(const std::vector<Index<Dim>>& wet, const GridGeometry<Dim>& grid) {
+void PressureGrid<Dim>::number_cells(const std::vector<Index<Dim>>& wet) {
   Index<Dim> low = wet.front(), high = wet.front();
-  for (const auto& place : wet)
-    for (int a = 0; a < Dim; ++a) {
+  for (int a = 0; a < Dim; ++a) {
+    for (const auto& place : wet) {
       low[a] = std::min(low[a], std::max(0, place[a] - dilation));
-      high[a] = std::max(high[a], std::min(grid.cells[a] - 1, place[a] + dilation));
+      high[a] = std::max(high[a], std::min(geometry_.cells[a] - 1, place[a] + dilation));
     }
+    if (geometry_.periodic[a]) low[a] = 0, high[a] = geometry_.cells[a] - 1;
+  }
   cell_numbers_.cover(low, high);
   for (const auto& place : wet) {
     Index<Dim> from = place, to = place;
     for (int a = 0; a < Dim; ++a) {
-      from[a] = std::max(low[a], place[a] - dilation);
-      to[a] = std::min(high[a], place[a] + dilation);
+      from[a] = geometry_.periodic[a] ? place[a] - dilation : std::max(low[a], place[a] - dilation);
+      to[a] = geometry_.periodic[a] ? place[a] + dilation : std::min(high[a], place[a] + dilation);
     }
-    for_box<Dim>(from, to, [&](const Index<Dim>& cell) { cell_numbers_.at(cell) = 0; });
+    for_box<Dim>(from, to, [&](const Index<Dim>& cell) { cell_numbers_.at(geometry_.wrapped(cell)) = 0; });
   }
   cells_.clear();
   for_box<Dim>(low, high, [&](const Index<Dim>& place) {
@@ -103,9 +106,12 @@ void PressureGrid<Dim>::number_cells(const std::vector<Index<Dim>>& wet, const G
 
 template <int Dim>
 void PressureGrid<Dim>::number_vertices() {
-  vertex_numbers_.cover(cell_numbers_.low(), moved<Dim>(cell_numbers_.high(), 1));
+  Index<Dim> high = moved<Dim>(cell_numbers_.high(), 1);
+  for (int a = 0; a < Dim; ++a) high[a] -= geometry_.periodic[a] ? 1 : 0;
+  const auto corner = [&](const Cell& cell, int k) { return geometry_.wrapped(place_in_box<Dim>(cell.place, k, 2)); };
+  vertex_numbers_.cover(cell_numbers_.low(), high);
   for (const Cell& cell : cells_)
-    for (int k = 0; k < corners; ++k) vertex_numbers_.at(place_in_box<Dim>(cell.place, k, 2)) = 0;
+    for (int k = 0; k < corners; ++k) vertex_numbers_.at(corner(cell, k)) = 0;
   vertices_.clear();
   for_box<Dim>(vertex_numbers_.low(), vertex_numbers_.high(), [&](const Index<Dim>& place) {
     if (vertex_numbers_.at(place) < 0) return;
@@ -113,36 +119,40 @@ void PressureGrid<Dim>::number_vertices() {
     vertices_.push_back({place, {}, {}, {}, 1});
   });
   for (Cell& cell : cells_)
-    for (int k = 0; k < corners; ++k)
-      cell.vertex[static_cast<std::size_t>(k)] = vertex_numbers_.at(place_in_box<Dim>(cell.place, k, 2));
+    for (int k = 0; k < corners; ++k) cell.vertex[static_cast<std::size_t>(k)] = vertex_numbers_.at(corner(cell, k));
 }
 
 template <int Dim>
-void PressureGrid<Dim>::link_vertices(const GridGeometry<Dim>& grid) {
+void PressureGrid<Dim>::link_vertices() {
   for (Vertex& vertex : vertices_) {
     for (int k = 0; k < corners; ++k)
       vertex.cell[static_cast<std::size_t>(k)] =
-          cell_numbers_.find(place_in_box<Dim>(moved<Dim>(vertex.place, -1), k, 2));
+          cell_numbers_.find(geometry_.wrapped(place_in_box<Dim>(moved<Dim>(vertex.place, -1), k, 2)));
     for (int n = 0; n < stencil; ++n)
       vertex.neighbour[static_cast<std::size_t>(n)] =
-          vertex_numbers_.find(place_in_box<Dim>(moved<Dim>(vertex.place, -1), n, 3));
+          vertex_numbers_.find(geometry_.wrapped(place_in_box<Dim>(moved<Dim>(vertex.place, -1), n, 3)));
     vertex.share = 1;
     for (int a = 0; a < Dim; ++a)
-      if (vertex.place[a] == 0 || vertex.place[a] == grid.cells[a]) vertex.share *= 0.5;
+      if (!geometry_.periodic[a] && (vertex.place[a] == 0 || vertex.place[a] == geometry_.cells[a]))
+        vertex.share *= 0.5;
   }
 }
 
-/// Columns by number; rows ascend because neighbours are numbered in the order of the stencil.
+/// Columns by number. Neighbours are numbered in the order of the stencil, but across the seam of a periodic axis.
 template <int Dim>
 void PressureGrid<Dim>::make_pattern() {
   pattern_ = {};
   pattern_.column_begin.push_back(0);
   for (Vertex& vertex : vertices_) {
     vertex.slot.fill(-1);
-    for (std::size_t n = centre; n < stencil; ++n) {
-      if (vertex.neighbour[n] < 0) continue;
+    const std::int32_t own = vertex.neighbour[centre];
+    std::vector<std::pair<std::int32_t, std::size_t>> below;  // row, place in the stencil
+    for (std::size_t n = 0; n < stencil; ++n)
+      if (vertex.neighbour[n] >= own) below.emplace_back(vertex.neighbour[n], n);
+    std::ranges::sort(below);
+    for (const auto& [row, n] : below) {
       vertex.slot[n] = static_cast<std::int32_t>(pattern_.row.size());
-      pattern_.row.push_back(vertex.neighbour[n]);
+      pattern_.row.push_back(row);
     }
     pattern_.column_begin.push_back(static_cast<int>(pattern_.row.size()));
   }
@@ -150,8 +160,11 @@ void PressureGrid<Dim>::make_pattern() {
 
 template <int Dim>
 void PressureGrid<Dim>::find_runs() {
-  const auto complete = [](const Vertex& v) {
-    return v.share == 1 && std::ranges::min(v.cell) >= 0 && std::ranges::min(v.neighbour) >= 0;
+  const auto complete = [&](const Vertex& v) {
+    bool at_seam = false;
+    for (int a = 0; a < Dim; ++a)
+      at_seam = at_seam || (geometry_.periodic[a] && (v.place[a] == 0 || v.place[a] == geometry_.cells[a] - 1));
+    return !at_seam && v.share == 1 && std::ranges::min(v.cell) >= 0 && std::ranges::min(v.neighbour) >= 0;
   };
   run_end_.resize(vertices_.size());
   for (std::size_t i = vertices_.size(); i-- > 0;) {
@@ -172,7 +185,8 @@ void PressureGrid<Dim>::locate(const Blocks<Dim>& blocks) {
     for (std::size_t b = 0; b < blocks.particle_blocks().size(); ++b) {
       const Index<Dim> origin = moved<Dim>(blocks.particle_blocks()[b].first_cell, -tile_margin);
       for (std::size_t n = 0; n < tile; ++n) {
-        const std::int32_t number = numbers.find(place_in_box<Dim>(origin, static_cast<int>(n), width));
+        const std::int32_t number =
+            numbers.find(geometry_.wrapped(place_in_box<Dim>(origin, static_cast<int>(n), width)));
         const std::size_t at = b * tile + n;
         tiles[at] = number;
         if (number < 0) continue;

@@ -51,8 +51,8 @@ class PressureGrid {
   bool empty() const { return vertices_.empty(); }
   const std::vector<Vertex>& vertices() const { return vertices_; }
   /// Behind the last vertex of the run that vertex i belongs to: consecutive vertices along the first axis with all
-  /// their neighbours, so that cells, neighbours and slots follow each other as the vertices do. i itself if there is
-  /// no run.
+  /// their neighbours, none of them across the seam of a periodic axis, so that cells, neighbours and slots follow each
+  /// other as the vertices do. i itself if there is no run.
   std::size_t run_end(std::size_t i) const { return run_end_[i]; }
   const std::vector<Cell>& cells() const { return cells_; }
   const Entries& cell_entries(std::size_t cell) const { return cell_entries_[cell]; }
@@ -83,12 +83,13 @@ class PressureGrid {
     std::vector<std::int32_t> number_;
   };
 
-  void number_cells(const std::vector<Index<Dim>>& wet, const GridGeometry<Dim>& grid);
+  void number_cells(const std::vector<Index<Dim>>& wet);
   void number_vertices();
-  void link_vertices(const GridGeometry<Dim>& grid);
+  void link_vertices();
   void make_pattern();
   void find_runs();
 
+  GridGeometry<Dim> geometry_;
   Numbers cell_numbers_, vertex_numbers_;
   std::vector<Cell> cells_;
   std::vector<Vertex> vertices_;

@@ -43,6 +43,10 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
                       fmt::format("boundaries.{}: absorbing: the physics two_phase does not know it, for the waves of "
                                   "soil with water are others; take `physics: total_stress`",
                                   name));
+  if (definition.contact)
+    throw CaseError(definition.contact->place,
+                    "contact: the physics two_phase does not know it, for water would have to pass from body to body; "
+                    "take `physics: total_stress`");
   if (!definition.obstacles.empty())
     throw CaseError(definition.obstacles.front().place,
                     "obstacles: the physics two_phase does not know them, for it cannot hold water back at their "

@@ -204,13 +204,24 @@ const Schema<PoreSpace>& pore_schema() {
   return declared;
 }
 
-void check_faces(const Node& section, int dimension, Problems& problems) {
-  const auto allowed = face_words(dimension);
-  const Node* const faces = section.find("faces");
-  if (faces == nullptr || faces->kind != Node::Kind::map) return;
-  for (const auto& [name, place] : faces->keys)
+void check_faces(const Case& definition, Problems& problems) {
+  const auto allowed = face_words(definition.dimension());
+  const Node* const faces = definition.water.find("faces");
+  const bool given = faces != nullptr && faces->kind == Node::Kind::map;
+  for (const auto& [name, place] : given ? faces->keys : std::vector<std::pair<std::string, Place>>{}) {
+    const auto found = definition.faces.find(name);
     if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
       problems.add(place, fmt::format("unknown face '{}' in water.faces; {}", name, allowed_words(name, allowed)));
+    else if (found != definition.faces.end() && found->second.periodic)
+      problems.add(place, fmt::format("water.faces.{0}: the face is periodic in `boundaries`, for the water too; leave "
+                                      "out water.faces.{0}",
+                                      name));
+  }
+  if (const auto top = definition.faces.find("top"); top != definition.faces.end() && top->second.periodic)
+    problems.add(
+        definition.source.find("boundaries")->find("top")->place,
+        "boundaries.top: periodic: the physics two_phase does not know it, for water needs a top and a bottom; "
+        "take `physics: total_stress`, or make other faces periodic");
 }
 
 }  // namespace
@@ -232,7 +243,7 @@ double WaterCase::table_level(double x) const {
 WaterCase read_water(const Case& definition) {
   Problems problems;
   WaterCase water = schema().read(definition.water, {}, problems);
-  check_faces(definition.water, definition.dimension(), problems);
+  check_faces(definition, problems);
   problems.throw_if_any();
   if (!water.ponds.empty())
     check_regions(water.ponds, *definition.water.find("ponds"), definition.dimension(), problems);

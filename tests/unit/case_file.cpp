@@ -242,13 +242,34 @@ TEST(CaseFile, WrongFaces) {
             "c.yaml:8:14: unknown face 'lft' in boundaries; allowed: left, right, bottom, top; did you mean 'left'?");
   EXPECT_NE(message_with_more("boundaries: {front: roller}\n").find("unknown face 'front'"), std::string::npos);
   EXPECT_EQ(message_with_more("boundaries: {left: rollers}\n"),
-            "c.yaml:8:20: boundaries.left: found 'rollers'; allowed: free, roller, fixed; did you mean 'roller'?");
+            "c.yaml:8:20: boundaries.left: found 'rollers'; allowed: free, roller, fixed, periodic; did you mean "
+            "'roller'?");
   EXPECT_EQ(message_with_more("boundaries: {left: {friction: 0.4}}\n"),
             "c.yaml:8:31: boundaries.left: friction needs `normal: fixed` or `normal: contact`");
   EXPECT_EQ(message_with_more("boundaries: {left: {normal: fixed, tangential: fixed, friction: 0.4}}\n"),
             "c.yaml:8:65: boundaries.left: friction contradicts `tangential: fixed`; leave out one of them");
   EXPECT_EQ(message_with_more("boundaries: {left: {normal: fixed, friction: -1}}\n"),
             "c.yaml:8:46: friction is -1; it must be at least 0");
+}
+
+TEST(CaseFile, PeriodicFaces) {
+  EXPECT_EQ(message_with_more("boundaries: {left: periodic}\n"),
+            "c.yaml:8:20: boundaries.left: periodic, but right is not; what leaves through one of them comes in at the "
+            "other: give `right: periodic`, too");
+  EXPECT_EQ(message_with_more("boundaries: {top: periodic, bottom: roller}\n"),
+            "c.yaml:8:19: boundaries.top: periodic, but bottom is not; what leaves through one of them comes in at the "
+            "other: give `bottom: periodic`, too");
+  EXPECT_EQ(message_with_more("boundaries: {left: periodic, right: periodic}\n"),
+            "c.yaml:8:20: boundaries.left: a periodic axis needs a multiple of 8 cells in 2-D; there are 10 along x; "
+            "take 8 or 16");
+  EXPECT_EQ(message_with_more("boundaries: {bottom: periodic, top: periodic}\n"),
+            "c.yaml:8:22: boundaries.bottom: a periodic axis needs a multiple of 8 cells in 2-D; there are 5 along y; "
+            "take 8");
+  const Case good = parse_case(
+      replaced(minimal, "max: [10 m, 5 m]", "max: [16 m, 5 m]") + "boundaries: {left: periodic, right: periodic}\n",
+      "c.yaml");
+  EXPECT_TRUE(good.grid.periodic[0]);
+  EXPECT_FALSE(good.grid.periodic[1]);
 }
 
 TEST(CaseFile, AllProblemsComeAtOnce) {

@@ -42,6 +42,19 @@ std::string with_more(const std::string& lines) { return message_of(column + lin
 
 TEST(CaseWater, IsAccepted) { EXPECT_EQ(message_of(column), ""); }
 
+TEST(CaseWater, PeriodicFacesArePeriodicForTheWater) {
+  const std::string wide = replaced(column, "max: [2 m, 5 m]", "max: [4 m, 4 m]");
+  const std::string sides = "boundaries: {left: periodic, right: periodic}\n";
+  EXPECT_EQ(message_of(wide + sides), "");
+  EXPECT_EQ(message_of(replaced(wide, "{density: 1000 kg/m3}", "{faces: {left: drained}}") + sides),
+            "c.yaml:11:17: water.faces.left: the face is periodic in `boundaries`, for the water too; leave out "
+            "water.faces.left");
+  EXPECT_EQ(
+      message_of(wide + "boundaries: {bottom: periodic, top: periodic}\n"),
+      "c.yaml:12:37: boundaries.top: periodic: the physics two_phase does not know it, for water needs a top and a "
+      "bottom; take `physics: total_stress`, or make other faces periodic");
+}
+
 TEST(CaseWater, ReadsFacesLevelsAndTables) {
   const WaterCase water = read_water(parse_case(
       replaced(column, "{density: 1000 kg/m3}",
