@@ -9,6 +9,7 @@ namespace sluice::advice {
 
 Loading Loading::at_frequency(double hertz) { return {2 * std::numbers::pi * hertz, 0}; }
 Loading Loading::within(double seconds) { return {std::numbers::pi / (2 * seconds), seconds}; }
+Loading Loading::for_a_time(double seconds) { return {std::numbers::pi / (2 * seconds), seconds, false}; }
 
 void ColumnErrors::take_larger(const ColumnErrors& other) {
   for (std::size_t m = 0; m < models.size(); ++m) {
@@ -41,13 +42,15 @@ ColumnErrors column_errors(const exact::SaturatedSoil& soil, double drainage_len
   for (std::size_t m = 0; m + 1 < models.size(); ++m) found.error[m] = exact::model_error(models[m], found.groups);
   if (loading.duration == 0) return found;
   found.time_factor = soil.consolidation_coefficient() * loading.duration / (drainage_length * drainage_length);
+  // What is there from the start sets nothing in motion.
+  if (!loading.comes) found.error[2] = found.error[3] = {0, 0};
   // Of a load that stays, the skin that has drained is small beside the whole; a root mean square over the depth of
   // the difference would make much of it. Where waves matter the harmonic errors stand.
-  if (found.groups.pi_2() > slow) return found;
+  if (loading.comes && found.groups.pi_2() > slow) return found;
   const double lost = drained_share(found.time_factor);
   found.error[1] = {lost, lost};
   const double kept = 1 - mean_drained_share(found.time_factor);
-  if (found.groups.inertia < slow) found.error[0] = {kept, kept};
+  if (!loading.comes || found.groups.inertia < slow) found.error[0] = {kept, kept};
   return found;
 }
 

@@ -24,9 +24,11 @@ inline constexpr std::array<ColumnModel, 5> models{ColumnModel::drained, ColumnM
 struct Loading {
   double omega = 0;     ///< [1/s]; of a load that comes within a time pi / (2 time)
   double duration = 0;  ///< [s]; 0: harmonic
+  bool comes = true;    ///< false: it is there from the start, and may drain for the duration
 
   static Loading at_frequency(double hertz);
   static Loading within(double seconds);
+  static Loading for_a_time(double seconds);
 };
 
 /// Errors by index in `models`; 0 for the full model.

@@ -209,7 +209,8 @@ void find_stages(SceneNumbers& scene, const Case& definition) {
   const double g = gravity_of(definition);
   if (g > 0 && scene.height > 0 && std::ranges::any_of(scene.soils, may_flow))
     gathered.add("a fall by the height of the scene", std::sqrt(2 * scene.height / g));
-  gathered.add("the whole run", definition.end_time);
+  gathered.stages.push_back(
+      {fmt::format("the whole run, {:.3g} s", definition.end_time), Loading::for_a_time(definition.end_time)});
   scene.stages = std::move(gathered.stages);
 }
 

@@ -121,5 +121,15 @@ TEST(AdviceColumn, SlowLoadsAreDrainedAndFastOnesAreNot) {
   EXPECT_EQ(after(7).simplest(0.05), drained);
 }
 
+// A load that is there from the start drains or does not, however short the run: nothing comes in that time, so that
+// water needs no inertia. The control is a load that comes in it.
+TEST(AdviceColumn, LoadsThatAreThereSetNothingInMotion) {
+  const exact::SaturatedSoil s = soil(1e-3, 13.46e6, 0.3);
+  EXPECT_GT(column_errors(s, 1, Loading::within(0.003)).worst(u_p), 0.05);
+  const ColumnErrors found = column_errors(s, 1, Loading::for_a_time(0.003));
+  EXPECT_EQ(found.worst(u_p), 0);
+  EXPECT_DOUBLE_EQ(found.worst(undrained), drained_share(found.time_factor));
+}
+
 }  // namespace
 }  // namespace sluice::advice
