@@ -205,6 +205,20 @@ TEST(SteepSlope, CatchesOnStepsWithoutIt) {
   EXPECT_LT(way_down(steep("")), 0.7 * expected);
 }
 
+// cases/sliding_into_clay.yaml: the block comes to the clay as a rigid one does, and is stopped by it.
+TEST(SlidingIntoClay, IsStopped) {
+  const auto simulation = Simulation::create(load_case(std::string(SLUICE_CASES_DIR) + "/sliding_into_clay.yaml"));
+  const auto run_to = [&](double time) {
+    while (simulation->time() < time) simulation->advance(time);
+    return body_of(simulation->particles(), "block");
+  };
+  const double expected = 0.5 * 9.81 * (0.5 - 0.3 * std::sqrt(0.75)) * 1.4 * 1.4;
+  EXPECT_NEAR(run_to(1.4).displacement(0), expected, 0.01 * expected);
+  EXPECT_LT(body_of(simulation->particles(), "clay").displacement(0), 1e-3);
+  EXPECT_LT(std::abs(run_to(2.2).velocity(0)), 0.1);
+  EXPECT_GT(body_of(simulation->particles(), "clay").displacement(0), 0.01);
+}
+
 // ---- conservation ----
 
 /// Two discs graze each other. Linear momentum is kept to round-off, and the angular momentum of APIC, which its affine
