@@ -60,13 +60,15 @@ TEST_P(Drift, OfARotatingDisc) {
   const auto mass = by_id(particles, "mass");
   const double scale = 2.0 / 3 * disc::radius * disc::spin * sum(mass);  // sum m |v|
   const int turns = figures_folder() != nullptr ? 10 : 1;
-  FigureTable table("drift_" + name(scheme), "turns,time_s,steps,energy,momentum,angular_momentum");
+  FigureTable table("drift",
+                    "shape,transfer,flip_fraction,stress_update,turns,time_s,steps,energy,momentum,angular_momentum");
   for (int half = 0; half <= 2 * turns; ++half) {
     if (half > 0) simulation->advance_to(half * disc::pi / disc::spin);
     const double moved = std::hypot(total_momentum(particles, 0), total_momentum(particles, 1)) / scale;
     const double now = kinetic_and_elastic_energy(*simulation) / energy;
     const double left = disc::angular_momentum(particles, scheme) / turning;
-    table.row(half / 2.0, simulation->time(), simulation->steps(), now, moved, left);
+    table.row(scheme.shape, scheme.transfer, scheme.flip_fraction, scheme.stress_update, half / 2.0, simulation->time(),
+              simulation->steps(), now, moved, left);
     EXPECT_LT(moved, 1e-12);
     if (half == 2) expect_of_a_turn(scheme, *simulation, now, left);
   }

@@ -3,11 +3,9 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <fmt/os.h>
-#include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <optional>
+#include <fstream>
 #include <string>
 
 namespace sluice {
@@ -15,23 +13,29 @@ namespace sluice {
 /// The folder for the tables, or none.
 inline const char* figures_folder() { return std::getenv("SLUICE_FIGURES"); }
 
-/// A table of comma-separated values, a header first. Nothing is written where no figures are asked for.
+/// A table of comma-separated values, to which several tests may add rows; the first one writes the header. Nothing is
+/// written where no figures are asked for.
 class FigureTable {
  public:
   FigureTable(const std::string& name, const std::string& header) {
-    if (const char* const folder = figures_folder())
-      file_.emplace(fmt::output_file(fmt::format("{}/{}.csv", folder, name)));
-    if (file_) file_->print("{}\n", header);
+    if (figures_folder() == nullptr) return;
+    file_.open(fmt::format("{}/{}.csv", figures_folder(), name), std::ios::app);
+    if (file_.tellp() == 0) file_ << header << '\n';
   }
   template <class... Values>
   void row(const Values&... values) {
     std::string line;
-    ((line += fmt::format("{}{}", line.empty() ? "" : ",", values)), ...);
-    if (file_) file_->print("{}\n", line);
+    ((line += fmt::format("{}{}", line.empty() ? "" : ",", text(values))), ...);
+    if (file_.is_open()) file_ << line << std::endl;
   }
 
  private:
-  std::optional<fmt::ostream> file_;
+  template <class Value>
+  static std::string text(const Value& value) {
+    if constexpr (std::is_floating_point_v<Value>) return fmt::format("{:.6g}", value);
+    return fmt::format("{}", value);
+  }
+  std::ofstream file_;
 };
 
 }  // namespace sluice

@@ -26,12 +26,11 @@ struct CutLimit : ::testing::TestWithParam<Scheme> {};
 
 TEST_P(CutLimit, IsThatOfLinearTheory) {
   const bool whole = figures_folder() != nullptr;
-  FigureTable table("small_cut_" + GetParam().name(), "delta,measured,predicted");
-  for (const double j :
-       whole ? std::vector<double>{0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8} : std::vector<double>{2, 6}) {
+  FigureTable table("small_cuts", "shape,transfer,stress_update,delta,measured,predicted");
+  for (const double j : whole ? std::vector<double>{0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8} : std::vector<double>{2, 6}) {
     const FreeBar bar = bar_with_cut(GetParam(), std::pow(10, -j));
     const double measured = measured_limit(bar, 1e-5), predicted = predicted_limit(bar, 1e-5);
-    table.row(std::pow(10, -j), measured, predicted);
+    table.row(GetParam().shape, GetParam().transfer, GetParam().stress_update, std::pow(10, -j), measured, predicted);
     EXPECT_NEAR(measured / predicted, 1, 0.08) << "delta = 1e-" << j;
   }
 }
@@ -72,7 +71,7 @@ double strain_rate_at_cut(const std::string& shape, double delta) {
 // is the difference of the accelerations of two nodes, goes with 1 / delta. Quadratic functions have mass delta^2 / 2
 // and force delta, and the particle sees that node with a slope of delta: bounded.
 TEST(SmallCuts, StrainRateOfLinearFunctionsGoesWithOneOverDelta) {
-  FigureTable table("small_cut_strain_rate", "delta,linear,ugimp,quadratic_bspline,cubic_bspline");
+  FigureTable table("small_cuts_strain_rate", "delta,linear,ugimp,quadratic_bspline,cubic_bspline");
   for (double j = 1; j < 8.5; j += 0.5) {
     const double delta = std::pow(10, -j), linear = strain_rate_at_cut("linear", delta);
     const double ugimp = strain_rate_at_cut("ugimp", delta), quadratic = strain_rate_at_cut("quadratic_bspline", delta);

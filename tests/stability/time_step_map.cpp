@@ -11,14 +11,13 @@ class StepOfBar : public ::testing::TestWithParam<Scheme> {};
 // 8 %: the search goes in steps of 2 %, and what grows by less than a thousandth in a step is not seen.
 TEST_P(StepOfBar, IsThatOfLinearTheory) {
   const bool whole = figures_folder() != nullptr;
-  FigureTable table("time_step_" + GetParam().name(), "per_axis,offset,measured,predicted");
+  FigureTable table("time_step", "shape,transfer,stress_update,per_axis,offset,measured,predicted");
   for (const int per_axis : whole ? std::vector<int>{1, 2, 3, 4} : std::vector<int>{2})
-    for (const double offset :
-         whole ? std::vector<double>{0.003, 0.05, 0.1, 0.2, 0.3, 0.4, 0.497, 0.503, 0.6, 0.7, 0.8, 0.9, 0.97}
-               : std::vector<double>{0.1, 0.3}) {
+    for (const double offset : whole ? std::vector<double>{0.003, 0.1, 0.2, 0.3, 0.4, 0.497, 0.503, 0.7, 0.9}
+                                     : std::vector<double>{0.1, 0.3}) {
       const FreeBar bar{.scheme = GetParam(), .per_axis = per_axis, .offset = offset / per_axis};
       const double measured = measured_limit(bar), predicted = predicted_limit(bar);
-      table.row(per_axis, offset, measured, predicted);
+      table.row(GetParam().shape, GetParam().transfer, GetParam().stress_update, per_axis, offset, measured, predicted);
       EXPECT_NEAR(measured / predicted, 1, 0.08) << per_axis << ", " << offset;
     }
 }
