@@ -1,7 +1,7 @@
 /// F7: a column of particles that stands by a share delta inside the next cell gives the node behind it a mass of the
 /// order of delta (quadratic functions: delta^2), and a force of the order of one (of delta). Sources: that estimate,
 /// in the comments; eigenvalues of the step (tests/verification/linear_bar.h). docs/stability/f07_small_cuts.md.
-#include "tests/stability/figures.h"
+#include "tests/figures.h"
 #include "tests/stability/free_bar.h"
 
 namespace sluice {

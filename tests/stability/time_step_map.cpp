@@ -1,6 +1,6 @@
 /// F12: how long steps may be, whatever the number and the place of the particles. Sources: eigenvalues of the step
 /// (tests/verification/linear_bar.h); Ni & Zhang (2020) and Berzins (2018) for limits below h / c.
-#include "tests/stability/figures.h"
+#include "tests/figures.h"
 #include "tests/stability/free_bar.h"
 
 namespace sluice {

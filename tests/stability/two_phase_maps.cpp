@@ -4,7 +4,7 @@
 #include <random>
 
 #include "physics/exact/explicit_limits.h"
-#include "tests/stability/figures.h"
+#include "tests/figures.h"
 #include "tests/stability/unguarded_run.h"
 #include "tests/verification/amplification.h"
 #include "tests/verification/saturated_column.h"
