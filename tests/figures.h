@@ -32,7 +32,7 @@ class FigureTable {
  private:
   template <class Value>
   static std::string text(const Value& value) {
-    if constexpr (std::is_floating_point_v<Value>) return fmt::format("{:.6g}", value);
+    if constexpr (std::is_floating_point_v<Value>) return fmt::format("{:.10g}", value);
     return fmt::format("{}", value);
   }
   std::ofstream file_;
