@@ -38,8 +38,8 @@ double longest_calm_step(int cells_deep, int per_cell, const std::string& shape)
 
 // Quadratic functions bear 1.28 of (60) with p in the place of M, whatever the number of particles, from seven cells of
 // depth on: 1.09 is what they bear in soil (tests/stability/two_phase_maps.cpp), and only the lowest cells have all of
-// p. In shallower water it is less, for surfaces have their own limit, half of sqrt(h / g). The control: the limit of
-// the program, (62), knows nothing of the depth; its default is too long for water of more than seven cells. Linear
+// p. In shallower water it is less, for surfaces have their own limit, half of sqrt(h / g). The control is that
+// limit, (62), which knows nothing of the depth: half of it is too long for water of more than seven cells. Linear
 // functions, whose slopes jump, do not hold water at rest, nor do cubic ones, which are out of balance at walls.
 TEST(StillWater, IsCalmInStepsOfTheSkeletonThatItsPressureIs) {
   const bool whole = figures_folder() != nullptr;
@@ -62,6 +62,46 @@ TEST(StillWater, IsCalmInStepsOfTheSkeletonThatItsPressureIs) {
           EXPECT_LT(of_fall, 0.5);
         }
       }
+}
+
+/// The kinetic energy of water ten cells deep, over m g H, in ten seconds; or as long as it lasts.
+std::vector<double> energies_of_still_water(double dt) {
+  UnguardedRun run(basin(10, 4, "quadratic_bspline"));
+  const double weight = 1000 * gravity;  // of 1 m3/m, times H = 1 m
+  std::vector<double> energies;
+  for (double t = 0; t < 10; t += dt) {
+    if (!run.steps(1, dt)) break;
+    energies.push_back(run.kinetic_energy() / weight);
+  }
+  return energies;
+}
+
+// With (62a) water is calm: after a second less than 1e-8 of m g H moves, and the surface stays to a hundredth of a
+// cell. The control: steps of half of sqrt(h / g), in which it boils.
+TEST(StillWater, StaysStill) {
+  const auto calm = simulate(basin(10, 4, "quadratic_bspline"));
+  const auto height = [&] { return sum(by_id(calm->particles(), "position", 1)) / 400; };
+  const double before = height();
+  calm->advance_to(1);
+  double largest = 0;
+  std::string limiter;
+  while (calm->time() < 10) {
+    limiter = calm->advance(11).limiter;
+    largest = std::max(largest, energy(*calm, "kinetic"));
+  }
+  EXPECT_EQ(limiter, "pressure");
+  EXPECT_LT(largest, 1e-8 * 1000 * gravity);
+  EXPECT_NEAR(height(), before, 0.01 * cell);
+  const double long_step = 0.5 * std::sqrt(cell / gravity), short_step = 0.5 * cell / std::sqrt(gravity);
+  const auto boiling = energies_of_still_water(long_step);
+  EXPECT_GT(*std::max_element(boiling.begin() + std::min<std::ptrdiff_t>(10, std::ssize(boiling) - 1), boiling.end()),
+            1e-6);
+  if (figures_folder() == nullptr) return;
+  FigureTable table("still_water_energy", "step_s,time_s,kinetic");
+  for (const double dt : {0.84 * long_step, short_step}) {  // a little too long, so that it lasts
+    const auto energies = energies_of_still_water(dt);
+    for (std::size_t i = 0; i < energies.size(); ++i) table.row(dt, static_cast<double>(i + 1) * dt, energies[i]);
+  }
 }
 
 }  // namespace

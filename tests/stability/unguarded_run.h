@@ -22,13 +22,19 @@ class UnguardedRun {
   }
 
   Particles& particles() { return scene_.particles; }
+  double kinetic_energy() const {
+    for (const auto& [name, value] : module_->energies(scene_))
+      if (name == "kinetic") return value;
+    return NAN;
+  }
   double speed() const { return std::sqrt(scene_.motion.largest_speed_squared); }
-  /// False when the run has burst: particles have left the grid, inverted, or are no numbers.
+  /// False when the run has burst: particles have left the grid, crossed half a cell in a step, inverted, or are no
+  /// numbers.
   bool steps(int count, double dt) {
     try {
       for (int i = 0; i < count; ++i) {
         module_->step(scene_, dt);
-        if (!scene_.motion.inside) return false;
+        if (!scene_.motion.inside || scene_.motion.largest_travel > 0.5) return false;
         scene_.time += dt;
         ++scene_.step;
         scene_.previous_dt = dt;
