@@ -372,6 +372,18 @@ double PoreWater<Dim>::fastest_sound(const Particles& particles) const {
 }
 
 template <int Dim>
+double PoreWater<Dim>::fastest_under_pressure(const Particles& particles) const {
+  const Columns& columns = particles.columns;
+  const double *const pressure = columns.data(pressure_), *const mass = columns.data(particles.mass);
+  const double* const volume = columns.data(particles.volume);
+  double fastest = 0;
+  for (std::size_t p = 0; p < particles.size(); ++p)
+    if (spaces_[static_cast<std::size_t>(particles.material[p])].liquid)
+      fastest = std::max(fastest, pressure[p] * volume[p] / mass[p]);
+  return std::sqrt(fastest);
+}
+
+template <int Dim>
 double PoreWater<Dim>::compression_energy(const Particles& particles) const {
   const double compressibility = water_.compressibility();
   const Columns& columns = particles.columns;

@@ -81,6 +81,9 @@ class PoreWater {
 
   /// Largest speed of sound, where no drag holds the water back [m/s].
   double fastest_sound(const Particles& particles) const;
+  /// Of liquids, whose pressure resists the changes of volume that vertices do not see, like a bulk modulus (62a)
+  /// [m/s].
+  double fastest_under_pressure(const Particles& particles) const;
 
   /// The pressure from outside at the particles.
   PressedParticles<Dim>& pressed() { return pressed_; }

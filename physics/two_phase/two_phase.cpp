@@ -274,8 +274,11 @@ std::vector<TimeStepLimit> TwoPhase<Dim>::limits(const Scene<Dim>& scene, const 
   if (sound) all.front().name = "sound";
   double g = 0;
   for (const double component : scene.gravity) g = std::hypot(g, component);
-  if (pores_.any_liquid() && g > 0)
-    all.push_back({factors.courant * std::sqrt(scene.grid.smallest_cell() / g), "gravity"});
+  if (pores_.any_liquid()) {
+    const double h = scene.grid.smallest_cell();
+    if (g > 0) all.push_back({factors.courant * std::sqrt(h / g), "gravity"});
+    all.push_back({factors.courant * h / pores_.fastest_under_pressure(scene.particles), "pressure"});
+  }
   return all;
 }
 

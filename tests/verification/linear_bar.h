@@ -10,8 +10,9 @@
 
 namespace sluice {
 
-/// A bar of unit density along the first axis, fixed at x = 0 and free at x = length, two particles in the width of a
-/// cell. It vibrates from the velocity v0 sin(k x) on.
+/// A bar of unit density along the first axis. Either fixed at x = 0 and free at x = length, two particles in the width
+/// of a cell, vibrating from the velocity v0 sin(k x) on; or of particles anywhere, held by nothing, of which is asked
+/// whether it is stable.
 class LinearBar {
  public:
   using Matrix = Eigen::MatrixXd;
@@ -20,10 +21,20 @@ class LinearBar {
   LinearBar(const Scheme& scheme, int xpic_order, double length, double modulus, double h, double dt)
       : scheme_(scheme), order_(xpic_order), modulus_(modulus), dt_(dt), h_(h) {
     place_ = Vector::LinSpaced(std::lround(2 * length / h), h / 4, length - h / 4);
-    sum_stencils();
+    sum_stencils(static_cast<int>(std::lround(27 / h)), 2);
     step_ = matrix();
     state_ = Vector::Zero(step_.rows());
   }
+  /// `per_cell` particles in the width of a cell of unit size, in a grid of so many cells.
+  LinearBar(const Scheme& scheme, int xpic_order, const Vector& place, int per_cell, int cells, double modulus,
+            double dt)
+      : scheme_(scheme), order_(xpic_order), held_(false), modulus_(modulus), dt_(dt), h_(1), place_(place) {
+    sum_stencils(cells, per_cell);
+    step_ = matrix();
+  }
+
+  /// By how much the fastest growing motion grows in a step; 1 where none does.
+  double growth() const { return Eigen::EigenSolver<Matrix>(step_, false).eigenvalues().cwiseAbs().maxCoeff(); }
 
   /// Returns the energy, which is kinetic.
   double start(double v0, double k) {
@@ -46,15 +57,14 @@ class LinearBar {
 
  private:
   /// Values, slopes and APIC's weights, and the inverse masses of the nodes; a row a particle, a column a node.
-  void sum_stencils() {
-    const int cells = static_cast<int>(std::lround(27 / h_));
+  void sum_stencils(int cells, int per_cell) {
     const auto shape = shape_registry<2>().find(scheme_.shape, {})();
     const GridGeometry<2> grid{{0, 0}, {cells * h_, h_}, {h_, h_}, {cells, 1}};
     const int nodes = cells + shape->reach();
     wall_ = shape->outside();
     value_ = slope_ = moment_ = distance_ = Matrix::Zero(place_.size(), nodes);
     std::array<double, domain_capacity<2>> domain{};
-    shape->fill_domain(grid, 0.5, domain);
+    shape->fill_domain(grid, 1.0 / per_cell, domain);
     for (Eigen::Index p = 0; p < place_.size(); ++p) {
       const Stencil<2> s = shape->stencil(grid, {place_[p], h_ / 4}, domain);
       for (std::size_t n = 0; n < static_cast<std::size_t>(s.count); ++n) {
@@ -65,11 +75,15 @@ class LinearBar {
       moment_.row(p) = value_.row(p).cwiseProduct(distance_.row(p));
       moment_.row(p) /= moment_.row(p).dot(distance_.row(p));
     }
-    inverse_mass_ = value_.colwise().sum().transpose().unaryExpr([](double m) { return m > 0 ? 1 / m : 0; });
+    const Vector mass = value_.colwise().sum().transpose();
+    inverse_mass_ = mass.unaryExpr([](double m) { return m > 0 ? 1 / m : 0; });
+    // Very light nodes take no force, unless it comes to them as momentum.
+    const double least = scheme_.affine() && scheme_.stress_update != "usf" ? 0 : shape->negligible_weight();
+    accelerated_ = mass.unaryExpr([&](double m) { return m > least ? 1 / m : 0; });
   }
 
   Matrix held(Matrix nodes) const {
-    nodes.row(wall_).setZero();
+    if (held_) nodes.row(wall_).setZero();
     return nodes;
   }
 
@@ -90,7 +104,7 @@ class LinearBar {
     velocity.leftCols(n).setIdentity();
     stress.middleCols(n, n).setIdentity();
     if (scheme_.stress_update == "usf") stress += modulus_ * dt_ * slope_ * held(carried);
-    const Matrix moved = held(carried - dt_ * inverse_mass_.asDiagonal() * slope_.transpose() * stress);
+    const Matrix moved = held(carried - dt_ * accelerated_.asDiagonal() * slope_.transpose() * stress);
     Matrix after = Matrix::Zero(size, size);
     after.topRows(n) = value_ * moved;
     if (scheme_.transfer == "flip") after.topRows(n) += velocity - value_ * carried;
@@ -116,8 +130,9 @@ class LinearBar {
 
   Scheme scheme_;
   int order_, wall_ = 0;
+  bool held_ = true;
   double modulus_, dt_, h_;
-  Vector place_, mode_, inverse_mass_, state_;
+  Vector place_, mode_, inverse_mass_, accelerated_, state_;
   Matrix value_, slope_, moment_, distance_, step_;
 };
 

@@ -1,69 +1,14 @@
 /// F11: a free elastic disc in rotation. Sources: conservation of angular momentum (Jiang et al. 2015 for APIC on
 /// B-splines, where the affine field carries m h^2 / 4 per unit of C); the elastic solution of a rotating disc in plane
 /// strain.
-#include <numbers>
-
+#include "tests/verification/rotating_disc.h"
 #include "core/grid/blocks.h"
 #include "physics/materials/materials.h"
-#include "tests/verification/scene_fixture.h"
 
 namespace sluice {
 namespace {
 
-constexpr double pi = std::numbers::pi, radius = 0.5, spin = 1, density = 1000, poisson = 0.3;
-
-/// Stresses of the rotating disc: sigma_r = A (R^2 - r^2), sigma_theta = A R^2 - B r^2.
-constexpr double A = (3 - 2 * poisson) / (8 * (1 - poisson)) * density * spin * spin;
-constexpr double B = (1 + 2 * poisson) / (8 * (1 - poisson)) * density * spin * spin;
-
-std::string circle() {
-  std::string points;
-  for (int i = 0; i < 72; ++i)
-    points +=
-        fmt::format("{}[{} m, {} m]", i ? ", " : "", radius * std::cos(pi * i / 36), radius * std::sin(pi * i / 36));
-  return "[" + points + "]";
-}
-
-std::unique_ptr<Simulation> disc(const Scheme& scheme, double h = 0.1) {
-  auto simulation =
-      simulate({.grid = fmt::format("{{min: [-1 m, -1 m], max: [1 m, 1 m], cell: {} m}}", h),
-                .material = "{model: linear_elastic, density: 1000 kg/m3, youngs_modulus: 0.2 MPa, poisson_ratio: 0.3}",
-                .bodies = fmt::format("  - {{material: soil, polygon: {}}}", circle()),
-                .scheme = scheme});
-  Particles& particles = simulation->particles();
-  set_column(particles, "velocity", 0, [](const auto& x) { return -spin * x[1]; });
-  set_column(particles, "velocity", 1, [](const auto& x) { return spin * x[0]; });
-  if (scheme.affine()) {
-    set_column(particles, "affine_velocity", 1, [](const auto&) { return -spin; });
-    set_column(particles, "affine_velocity", 2, [](const auto&) { return spin; });
-  }
-  const auto stress = [&](int component, const auto& value) {
-    set_column(particles, "stress", component, [&](const auto& x) {
-      const double r = std::hypot(x[0], x[1]), c = x[0] / r, s = x[1] / r;
-      return value(A * (radius * radius - r * r), A * radius * radius - B * r * r, c, s);
-    });
-  };
-  stress(0, [](double sr, double st, double c, double s) { return sr * c * c + st * s * s; });
-  stress(1, [](double sr, double st, double c, double s) { return sr * s * s + st * c * c; });
-  stress(2, [](double sr, double st, double, double) { return poisson * (sr + st); });
-  stress(3, [](double sr, double st, double c, double s) { return (sr - st) * c * s; });
-  return simulation;
-}
-
-/// sum m (x v_y - y v_x), and what the affine field holds: sum m D (C_yx - C_xy), with D = h^2 / 4 for quadratic and
-/// h^2 / 3 for cubic B-splines.
-double angular_momentum(const Particles& particles, const Scheme& scheme, double h = 0.1) {
-  const auto m = by_id(particles, "mass");
-  const auto x = by_id(particles, "position", 0), y = by_id(particles, "position", 1);
-  const auto vx = by_id(particles, "velocity", 0), vy = by_id(particles, "velocity", 1);
-  double l = 0;
-  for (std::size_t p = 0; p < m.size(); ++p) l += m[p] * (x[p] * vy[p] - y[p] * vx[p]);
-  if (!scheme.affine()) return l;
-  const double moment = h * h / (scheme.shape == "cubic_bspline" ? 3 : 4);
-  const auto cxy = by_id(particles, "affine_velocity", 1), cyx = by_id(particles, "affine_velocity", 2);
-  for (std::size_t p = 0; p < m.size(); ++p) l += m[p] * moment * (cyx[p] - cxy[p]);
-  return l;
-}
+using namespace disc;
 
 /// Largest difference between the in-plane deviatoric stress and that of the elastic solution, over rho Omega^2 R^2.
 double deviatoric_error(const Particles& particles) {
@@ -95,7 +40,7 @@ class RotatingDisc : public ::testing::TestWithParam<Scheme> {};
 // grows or shrinks by Omega^2 dt / 2 of its radius a second without being strained, and its energy changes twice as
 // fast at given momentum.
 TEST_P(RotatingDisc, KeepsItsMomentumAndItsStress) {
-  const auto simulation = disc(GetParam());
+  const auto simulation = rotating_disc(GetParam());
   const double momentum = angular_momentum(simulation->particles(), GetParam()),
                kinetic = energy(*simulation, "kinetic");
   for (const int turns : {1, 2, 3}) {
@@ -118,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, RotatingDisc, ::testing::ValuesIn(affine_schem
 TEST(RotatingDiscWithTpic, LosesMomentumWithTheSecondOrderOfTheCells) {
   const auto largest_change = [](const std::string& shape, double h) {
     const Scheme scheme = {shape, "tpic", "usl", 1, {}};
-    const auto simulation = disc(scheme, h);
+    const auto simulation = rotating_disc(scheme, h);
     const double momentum = angular_momentum(simulation->particles(), scheme, h);
     double largest = 0;
     for (const int half_turns : {1, 2}) {
@@ -139,7 +84,7 @@ TEST(RotatingDiscWithTpic, LosesMomentumWithTheSecondOrderOfTheCells) {
 TEST(RotatingDiscWithPic, LosesItsMomentum) {
   const auto left_after_a_turn = [](double flip) {
     const Scheme scheme = {"quadratic_bspline", "flip", "musl", flip, {}};
-    const auto simulation = disc(scheme);
+    const auto simulation = rotating_disc(scheme);
     const double momentum = angular_momentum(simulation->particles(), scheme);
     simulation->advance_to(2 * pi / spin);
     return angular_momentum(simulation->particles(), scheme) / momentum;

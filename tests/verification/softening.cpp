@@ -2,6 +2,7 @@
 /// Bazant & Oh (1983); docs/materials/softening.md, (SO.2), (SO.3).
 #include <numbers>
 
+#include "tests/figures.h"
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {
@@ -53,11 +54,13 @@ double softening_work(const Simulation& simulation, double full_strain) {
 TEST(Softening, DissipationOfABandDoesNotDependOnTheGrid) {
   const std::string law = fmt::format("sensitivity: 5, strain: {}", strain);
   std::vector<double> with, without;
+  FigureTable table("softening", "cell_m,regularised_J_m2,plain_J_m2");
   for (const double cell : {0.125, 0.0625, 0.03125}) {
     const auto regular = sheared_layer(cell, law + fmt::format(", reference_width: {} m", width));
     with.push_back(softening_work(*regular, strain * width / cell));
     const auto plain = sheared_layer(cell, law);
     without.push_back(softening_work(*plain, strain));
+    table.row(cell, with.back(), without.back());
   }
   const double of_a_cell = 0.5 * (peak - residual) * std::numbers::sqrt3 * strain * width;
   EXPECT_GT(with[2] / of_a_cell, 2);

@@ -97,6 +97,15 @@ TEST_P(SymmetricCollapse, StaysSymmetric) {
   }
 }
 
+// The control: one particle out of a thousand a billionth of a cell off is noticed.
+TEST(AsymmetricCollapse, IsSeen) {
+  const auto simulation = column(2, {});
+  Particles& particles = simulation->particles();
+  particles.columns.data(particles.position, 0)[particles.size() / 3] += 0.5e-9;
+  simulation->advance_to(0.8);
+  EXPECT_GT(asymmetry(simulation->particles(), 0), 1e-10);
+}
+
 INSTANTIATE_TEST_SUITE_P(Schemes, SymmetricCollapse, ::testing::ValuesIn(survivors()), scheme_name);
 
 // The column is eight cells high, and its shear layer at the floor two cells: what a mapping smooths is not little, and

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "physics/exact/spurious_permeability.h"
+#include "tests/figures.h"
 #include "tests/verification/saturated_column.h"
 
 namespace sluice {
@@ -11,9 +12,10 @@ namespace {
 constexpr double wave_number = std::numbers::pi / 2;  // of a column of 1 m [1/m]
 constexpr double amplitude = 1000;                    // [Pa]
 
-SaturatedColumn column(const std::string& formulation, const std::string& shape, double beta) {
+SaturatedColumn column(const std::string& formulation, const std::string& shape, double beta,
+                       double conductivity = 1e-5) {
   SaturatedColumn column;
-  column.soil = sand(1e-5);
+  column.soil = sand(conductivity);
   column.formulation = formulation;
   column.water = fmt::format("increment: {}, ", beta);
   column.scheme.shape = shape;
@@ -101,6 +103,20 @@ TEST(SpuriousPermeability, OfThePublishedSchemeIsAsPredicted) {
   EXPECT_NEAR(published / exact::spurious_consolidation_factor(here.soil, 0, dt), 1, 0.01);
   const double consistent = exact::measured_consolidation_factor(here.soil, 0, dt, wave_number, h, true, 40000);
   EXPECT_NEAR(consistent, decay(here).factor, 3e-3);
+}
+
+// For the figure: over the permeability, the published scheme as predicted and as run, and the module.
+TEST(SpuriousPermeability, OverPermeability) {
+  if (figures_folder() == nullptr) GTEST_SKIP() << "draws a figure only: SLUICE_FIGURES";
+  FigureTable table("spurious_permeability", "k_m_s,beta,published_predicted,published_run,module");
+  for (const double k : {1e-3, 3e-4, 1e-4, 3e-5, 1e-5})
+    for (const double beta : {0.0, 0.9, 1.0}) {
+      const SaturatedColumn here = column("v-w-p", "linear", beta, k);
+      const Decay found = decay(here);
+      table.row(k, beta, exact::spurious_consolidation_factor(here.soil, beta, found.dt),
+                exact::measured_consolidation_factor(here.soil, beta, found.dt, wave_number, here.cell(), false, 10000),
+                found.factor);
+    }
 }
 
 }  // namespace
