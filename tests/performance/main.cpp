@@ -34,7 +34,7 @@ namespace {
 
 using namespace sluice;
 
-const std::string case_file = std::string(SLUICE_CASES_DIR) + "/lower_san_fernando_paper.yaml";
+const std::string case_file = std::string(SLUICE_CASES_DIR) + "/12_lower_san_fernando_paper.yaml";
 
 Case dam(double cell, const std::string& shape, const std::string& transfer, const std::string& timing) {
   const std::string h = fmt::format("{} m", cell), dt = fmt::format("{} s", 1e-3 * cell);

@@ -30,25 +30,25 @@ void expect_words(const std::string& text, const std::vector<std::string>& all) 
 
 // H = 1 m, c_v t / H2 = 1 over the run: neither drained nor undrained. A column is as good with one cell across.
 TEST(AdviceOnCases, Terzaghi) {
-  expect_words(advice_on("terzaghi_column"),
+  expect_words(advice_on("13_terzaghi_column"),
                {"model           u-p is the right one within 5 %", "water drains over 1 m", "c_v t / L2 = 1\n",
                 "nothing varies along x: one cell across gives the same 8 times cheaper", "(the case)"});
 }
 
 // The drain lets the berm consolidate within the slide: total stresses would not do.
 TEST(AdviceOnCases, DamWithItsWater) {
-  const std::string said = advice_on("lower_san_fernando_effective");
+  const std::string said = advice_on("19_lower_san_fernando_effective");
   expect_words(said, {"model           u-p is the right one within 5 %", "'lens', is 3 m thick: 3 cells, where 4 are"});
 }
 
 // k = 1e-5 m/s and less, M = 2.7 MPa: in 50 s at most a few per cent of the pressure leave. Gravel would drain.
 TEST(AdviceOnCases, DamInTotalStresses) {
   const auto with = [](const std::string& permeability) {
-    return advice_on("lower_san_fernando",
+    return advice_on("11_lower_san_fernando",
                      {"--set", "advice.materials={lower_hydraulic_fill: {permeability: " + permeability +
                                    "}, liquefied: {permeability: " + permeability + "}}"});
   };
-  expect_words(advice_on("lower_san_fernando"), {"model           total stresses; with advice.materials.NAME"});
+  expect_words(advice_on("11_lower_san_fernando"), {"model           total stresses; with advice.materials.NAME"});
   expect_words(with("1e-6 m/s"), {"model           undrained total stress is the right one", "M = 2.69 MPa"});
   expect_words(with("1e-5 m/s"), {"model           undrained total stress is the right one"});
   expect_words(with("1e-3 m/s"), {"WARNING         the case models too little: undrained total stress is", "take u-p"});
@@ -57,7 +57,7 @@ TEST(AdviceOnCases, DamInTotalStresses) {
 // Said before the first step, and not with -q; the run goes on.
 TEST(AdviceOnCases, ARunIsWarned) {
   const Scratch scratch;
-  std::vector<std::string> words{"run",   std::string(SLUICE_CASES_DIR) + "/terzaghi_column.yaml",
+  std::vector<std::string> words{"run",   std::string(SLUICE_CASES_DIR) + "/13_terzaghi_column.yaml",
                                  "--set", "end_time=1 ms",
                                  "--set", "advice={frequency: 2 kHz}",
                                  "--set", "output={}",
@@ -72,7 +72,7 @@ TEST(AdviceOnCases, ARunIsWarned) {
 // The run is one of two_phase; what was decided, and by which numbers, stands in both files.
 TEST(AdviceOnCases, AutoRunsAndRecordsWhatItTook) {
   const Scratch scratch;
-  const std::vector<std::string> words{"run",   std::string(SLUICE_CASES_DIR) + "/terzaghi_column.yaml",
+  const std::vector<std::string> words{"run",   std::string(SLUICE_CASES_DIR) + "/13_terzaghi_column.yaml",
                                        "--set", "physics=auto",
                                        "--set", "end_time=0.05 s",
                                        "--set", "output.pictures=[]",
@@ -98,7 +98,7 @@ TEST(AdviceOnCases, AutoRunsAndRecordsWhatItTook) {
 // An interrupted run goes on: the choice is the same on every reading.
 TEST(AdviceOnCases, AutoResumes) {
   const Scratch scratch;
-  std::vector<std::string> words{"run",   std::string(SLUICE_CASES_DIR) + "/terzaghi_column.yaml",
+  std::vector<std::string> words{"run",   std::string(SLUICE_CASES_DIR) + "/13_terzaghi_column.yaml",
                                  "--set", "physics=auto",
                                  "--set", "output.pictures=[]",
                                  "--set", "output.picture_times=[]",

@@ -177,7 +177,7 @@ struct Known {
 // columns and of the sphere. The bounds are those of the tests, widened where the grid is coarser.
 TEST_F(Chart, measures_agree_with_verification) {
   const Known all[] = {
-      {"vibrating_bar", "vibrating_bar.yaml",
+      {"vibrating_bar", "01_vibrating_bar.yaml",
        "gravity: [4e-5 m/s2, 0], end_time: 20 s, output.every: 2 s, output.pictures: [], output.picture_times: []",
        2e-3},
       {"manufactured", "studies/bases/manufactured_waves.yaml", "bodies.0.particles_per_cell: 16", 0.02},

@@ -73,7 +73,7 @@ double density_of_the_slide(const std::filesystem::path& results) {
 
 TEST(LowerSanFernando, runs_out_and_comes_to_rest) {
   const Scratch scratch;
-  const auto observations = observations_of("lower_san_fernando", scratch);
+  const auto observations = observations_of("11_lower_san_fernando", scratch);
   expect_within(observations.at("runout"), 36, 50, "runout [m]");
   expect_within(observations.at("crest_loss"), 11, 15, "crest_loss [m]");
   double peak = 0, last = 0;
@@ -93,13 +93,13 @@ TEST(LowerSanFernando, runs_out_and_comes_to_rest) {
 /// quadratic B-splines can cheat (tests/verification/f_bar.cpp), by 4 %.
 TEST(LowerSanFernando, keeps_its_density_under_f_bar) {
   const Scratch scratch;
-  observations_of("lower_san_fernando", scratch, {"--set", "scheme.f_bar=true", "--set", "scheme.courant=0.5"});
+  observations_of("11_lower_san_fernando", scratch, {"--set", "scheme.f_bar=true", "--set", "scheme.courant=0.5"});
   EXPECT_NEAR(density_of_the_slide(scratch / "out/results.h5"), 1800, 0.02 * 1800);
 }
 
 TEST(LowerSanFernando, runs_out_with_the_discretisation_of_the_paper) {
   const Scratch scratch;
-  const auto observations = observations_of("lower_san_fernando_paper", scratch);
+  const auto observations = observations_of("12_lower_san_fernando_paper", scratch);
   expect_within(observations.at("runout"), 36, 50, "runout [m]");
   EXPECT_EQ(last_number(scratch / "out/history.csv", "step"), 50000);
 }

@@ -205,9 +205,9 @@ TEST(SteepSlope, CatchesOnStepsWithoutIt) {
   EXPECT_LT(way_down(steep("")), 0.7 * expected);
 }
 
-// cases/sliding_into_clay.yaml: the block comes to the clay as a rigid one does, and is stopped by it.
+// cases/10_sliding_into_clay.yaml: the block comes to the clay as a rigid one does, and is stopped by it.
 TEST(SlidingIntoClay, IsStopped) {
-  const auto simulation = Simulation::create(load_case(std::string(SLUICE_CASES_DIR) + "/sliding_into_clay.yaml"));
+  const auto simulation = Simulation::create(load_case(std::string(SLUICE_CASES_DIR) + "/10_sliding_into_clay.yaml"));
   const auto run_to = [&](double time) {
     while (simulation->time() < time) simulation->advance(time);
     return body_of(simulation->particles(), "block");

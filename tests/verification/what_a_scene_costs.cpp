@@ -59,7 +59,7 @@ TEST(WhatASceneCosts, DryElasticScene) {
 
 // The plastic strain besides.
 TEST(WhatASceneCosts, DamInTotalStresses) {
-  const auto simulation = dam("lower_san_fernando");
+  const auto simulation = dam("11_lower_san_fernando");
   expect_bytes(*simulation, 17 * 8);
   EXPECT_EQ(names(*simulation), of_every_scene + " affine_velocity equivalent_plastic_strain");
 }
@@ -82,7 +82,7 @@ TEST(WhatASceneCosts, SaturatedColumn) {
 // increments of strain and spin.
 TEST(WhatASceneCosts, DamWithPoreWater) {
   const auto simulation =
-      dam("lower_san_fernando_effective", {{"water.initial.method", "none"}, {"initial_stress.method", "none"}});
+      dam("19_lower_san_fernando_effective", {{"water.initial.method", "none"}, {"initial_stress.method", "none"}});
   expect_bytes(*simulation, 39 * 8);
   EXPECT_EQ(names(*simulation), of_every_scene + " affine_velocity" + of_water +
                                     " outside_pressure body_force equivalent_plastic_strain strain_increment "
@@ -113,8 +113,8 @@ double median(std::vector<double> values) {
 // none of the water's stages. On an idle machine 0.7 and 4.9 (docs/advisor.md).
 TEST(WhatASceneCosts, TimeIsPaidForWhatIsDeclared) {
   set_thread_count(1);
-  const std::array<std::unique_ptr<Simulation>, 3> scenes{simulate(dry_elastic()), dam("lower_san_fernando"),
-                                                          dam("lower_san_fernando_effective")};
+  const std::array<std::unique_ptr<Simulation>, 3> scenes{simulate(dry_elastic()), dam("11_lower_san_fernando"),
+                                                          dam("19_lower_san_fernando_effective")};
   for (const auto& scene : scenes) burst(*scene);
   std::vector<double> dry, wet, seconds[3];
   for (int turn = 0; turn < 9; ++turn) {
