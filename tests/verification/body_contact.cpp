@@ -138,11 +138,11 @@ double way(const SceneText& scene, double until = 1) {
   return body_of(simulation->particles(), "block").displacement(0);
 }
 
-class SlidingBlock : public ::testing::TestWithParam<Scheme> {};
+class BlockOnBench : public ::testing::TestWithParam<Scheme> {};
 
 // s = g (sin - mu cos) t^2 / 2. The stresses of the start hold a block that is glued to the bench; letting it go shakes
 // both by less than a millimetre.
-TEST_P(SlidingBlock, SlidesAsARigidOneDoes) {
+TEST_P(BlockOnBench, SlidesAsARigidOneDoes) {
   for (const double friction : {0.0, 0.2}) {
     const double expected = 0.5 * g * (slope - friction) / std::hypot(1.0, slope);
     EXPECT_NEAR(way(sliding(GetParam(), friction)), expected, 0.02 * expected) << friction;
@@ -150,12 +150,12 @@ TEST_P(SlidingBlock, SlidesAsARigidOneDoes) {
 }
 
 // Friction enough, or adhesion enough: it stays, but for what the bench gives.
-TEST_P(SlidingBlock, StaysWhereFrictionHolds) {
+TEST_P(BlockOnBench, StaysWhereFrictionHolds) {
   EXPECT_LT(std::abs(way(sliding(GetParam(), 0.7))), 0.01);
   EXPECT_LT(std::abs(way(sliding(GetParam(), 0.2, ", adhesion: 20 kPa"))), 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schemes, SlidingBlock,
+INSTANTIATE_TEST_SUITE_P(Schemes, BlockOnBench,
                          ::testing::Values(Scheme{"quadratic_bspline", "apic", "usl"},
                                            Scheme{"cubic_bspline", "flip", "usl"}, Scheme{"ugimp", "tpic", "usl"},
                                            Scheme{"cpdi2", "flip", "usl"}),

@@ -341,6 +341,35 @@ TEST(SeamOfMore, IsNowhereWithWater) {
   }
 }
 
+TEST(SeamOfMore, IsNowhereWithWaterInSpace) {
+  const auto scene = [](double shift) {
+    std::string bodies;
+    for (const double x : {1.0, 5.0})
+      if (shift != 0 || x == 1)
+        bodies += fmt::format(
+            "  - {{material: soil, box: {{min: [{} m, 0 m, 0 m], max: [{} m, 4 m, 1.5 m]}}, velocity: [1, 0, 0 "
+            "m/s]}}\n",
+            shift == 0 ? 1
+            : x == 1   ? 2
+                       : 5,
+            shift == 0 ? 3
+            : x == 1   ? 3
+                       : 6);
+    return SceneText{
+        .grid = fmt::format("{{min: [{} m, 0 m, 0 m], max: [{} m, 4 m, 3 m], cell: 0.5 m}}", shift, shift + 4),
+        .material =
+            "{model: linear_elastic, density: 1800 kg/m3, youngs_modulus: 1 MPa, poisson_ratio: 0.3, water: "
+            "{porosity: 0.4, permeability: 1e-3 m/s}}",
+        .bodies = bodies,
+        .gravity = "[0, 0, -9.81 m/s2]",
+        .boundaries = "{left: periodic, right: periodic, front: periodic, back: periodic, bottom: fixed}",
+        .scheme = {.more = "time_step: 0.5 ms"},
+        .physics = "two_phase",
+        .more = "water: {initial: {method: hydrostatic, level: 1.5 m}}\n"};
+  };
+  expect_no_seam(scene, 15, 2, 4, {{"pore_pressure", 0, 1e-6}, {"velocity", 0, 1e-6}, {"stress", 2, 1e-6}});
+}
+
 // ---- motion along a periodic axis ----
 
 // Free fall through the bottom and in at the top, four turns: v = -g t and s = -g t^2 / 2, to round-off.
