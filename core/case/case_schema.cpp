@@ -531,7 +531,8 @@ Schema<Case> make_case_schema() {
           {.name = "advice",
            .type = field_type::section,
            .default_text = "guessed from the case",
-           .sentence = "What `sluice check` and `physics: auto` judge the case by; read by advisors, see `auto` below."},
+           .sentence =
+               "What `sluice check` and `physics: auto` judge the case by; read by advisors, see `auto` below."},
           [](Case& definition, const Node& node, Problems&) { definition.advice = node; },
           [](const Case& definition) { return definition.advice; })
       .sections("changes", &Case::changes, change_schema(), "Materials that give way to others during the run.", false)
