@@ -36,7 +36,7 @@ struct Node {
   static Node list(std::vector<Node> items = {});
   static Node map();
   void set(const std::string& key, Node value);  ///< adds or replaces a value of a map
-  void erase(const std::string& key);             ///< takes a value out of a map, if it is there
+  void erase(const std::string& key);            ///< takes a value out of a map, if it is there
 
   explicit operator bool() const { return kind != Kind::absent; }
   const Node* find(const std::string& key) const;  ///< nullptr if this is no map or has no such key
