@@ -26,7 +26,8 @@ class Interruption : public testing::Test {
  protected:
   void SetUp() override {
     const std::string finer = with(with(column, "cell: 0.25 m", "cell: 0.1 m"), "end_time: 1 s", "end_time: 2 s");
-    scratch_.write("case.yaml", with(finer, "every: 0.1 s", "every: 0.07 s, checkpoint_every: 10 ms"));
+    scratch_.write("case.yaml",
+                   with(finer, "every: 0.1 s", "every: 0.07 s, history_every: 0 s, checkpoint_every: 10 ms"));
   }
 
   std::vector<std::string> run(const std::string& folder, const std::vector<std::string>& more = {}) const {
@@ -73,7 +74,8 @@ class InterruptionOfTwoPhase : public Interruption, public testing::WithParamInt
                 "two_phase\nwater: {formulation: " + GetParam() + ", bulk_modulus: 50 MPa}\n" +
                     "surface_loads: [{pressure: [[0 s, 0 kPa], [0.5 s, 5 kPa]]}]\n");
     text = with(text, "cohesion: 100 Pa", "cohesion: 100 Pa\n    water: {porosity: 0.4, permeability: 5 mm/s}");
-    scratch_.write("case.yaml", with(text, "every: 0.1 s", "every: 0.07 s, checkpoint_every: 10 ms"));
+    scratch_.write("case.yaml",
+                   with(text, "every: 0.1 s", "every: 0.07 s, history_every: 0 s, checkpoint_every: 10 ms"));
   }
 
   /// Steps of the uninterrupted run that renewed the factor, and that iterated with an old one.
