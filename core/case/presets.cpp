@@ -17,11 +17,10 @@ bool add(const std::string& name, const Preset& preset) {
 
 const bool registered =
     add("balanced", {"What the scheme is without a word: quadratic B-splines with APIC, stresses last.", {}}) &&
-    add("fast", {"Linear functions with nearly pure FLIP, stresses last after a second mapping of the velocity: the "
-                 "least time for a run that holds.",
-                 {{"shape", "linear"}, {"transfer", "flip"}, {"flip_fraction", "0.99"}, {"stress_update", "musl"}}}) &&
-    add("accurate", {"Cubic B-splines with TPIC, stresses last, short steps.",
-                     {{"shape", "cubic_bspline"}, {"transfer", "tpic"}, {"courant", "0.25"}}}) &&
+    add("fast", {"uGIMP with TPIC, stresses last: the most exact on coarse grids, for material that keeps together.",
+                 {{"shape", "ugimp"}, {"transfer", "tpic"}}}) &&
+    add("accurate", {"Cubic B-splines with APIC, stresses last; wants 9 particles in a cell or more (27 in 3-D).",
+                     {{"shape", "cubic_bspline"}, {"transfer", "apic"}}}) &&
     add("paper", {"Of Tjung & Soga: linear functions, FLIP, stresses first, steps of 0.04 of the wave limit.",
                   {{"shape", "linear"},
                    {"transfer", "flip"},

@@ -362,5 +362,33 @@ TEST_F(CaseFiles, PolygonsOfOtherFiles) {
   EXPECT_EQ(std::get<Polygon>(c.bodies[0].region.parts.at(0)).vertices.size(), 3u);
 }
 
+// A preset fills what the case leaves out, and no more; what is resolved means the same without it.
+TEST(CaseFile, PresetsFillTheScheme) {
+  const auto scheme = [](const std::string& section) {
+    return parse_case(
+               "schema: 1\nphysics: total_stress\ngrid: {min: [0 m, 0 m], max: [1 m, 1 m], cell: 0.5 m}\n"
+               "materials: {soil: {model: linear_elastic, density: 1 kg/m3, youngs_modulus: 1 Pa, poisson_ratio: 0}}\n"
+               "bodies: [{material: soil, box: {min: [0 m, 0 m], max: [1 m, 1 m]}}]\nend_time: 1 s\n" +
+                   section,
+               "c.yaml")
+        .scheme;
+  };
+  const SchemeCase usual = scheme(""), balanced = scheme("scheme: {preset: balanced}\n");
+  EXPECT_EQ(usual.shape + usual.transfer + usual.stress_update, "quadratic_bsplineapicusl");
+  EXPECT_EQ(balanced.shape + balanced.transfer + balanced.stress_update, "quadratic_bsplineapicusl");
+  const SchemeCase paper = scheme("scheme: {preset: paper, stress_update: musl}\n");
+  EXPECT_EQ(paper.shape + paper.transfer + paper.stress_update, "linearflipmusl");
+  EXPECT_EQ(paper.flip_fraction, 1);
+  EXPECT_EQ(paper.courant, 0.04);
+  EXPECT_EQ(scheme("scheme: {preset: accurate}\n").shape, "cubic_bspline");
+  try {
+    scheme("scheme: {preset: fats}\n");
+    FAIL();
+  } catch (const CaseError& error) {
+    EXPECT_STREQ(error.what(),
+                 "c.yaml:7:18: unknown preset 'fats'; allowed: accurate, balanced, fast, paper; did you mean 'fast'?");
+  }
+}
+
 }  // namespace
 }  // namespace sluice
