@@ -195,7 +195,9 @@ class Lines {
           "times the time)");
     if (scheme.shape == "linear" && scheme.transfer == "apic")
       add("scheme", "linear functions with APIC are not to be recommended; take flip or tpic, or quadratic_bspline");
-    if (!scheme.f_bar) say_locking();
+    // B-splines carry 5 to 9 % too much (docs/charts, strip_footing), others up to three times the exact load.
+    const bool splines = scheme.shape == "quadratic_bspline" || scheme.shape == "cubic_bspline";
+    if (!scheme.f_bar && !splines) say_locking();
     if (lines_.size() == before)
       add("scheme", fmt::format("{}, {}, {} suit the case", scheme.shape, scheme.transfer, scheme.stress_update));
   }

@@ -231,8 +231,12 @@ TEST(Advice, WarnsOfSchemesThatDoNotSuit) {
       "permeability: 1e-5 m/s}}";
   EXPECT_TRUE(says(layered, "stresses jump when points cross cells"));
   EXPECT_TRUE(says(layered, "'soil' keeps its volume where it flows: `f_bar: true`"));
-  layered.more = gravity + "scheme: {f_bar: true}\n";
-  EXPECT_TRUE(says(layered, "quadratic_bspline, apic, usl suit the case"));
+  layered.more = gravity + "scheme: {shape: ugimp}\n";
+  EXPECT_TRUE(says(layered, "`f_bar: true`"));
+  for (const char* splines : {"f_bar: true", "f_bar: false"}) {
+    layered.more = gravity + fmt::format("scheme: {{{}}}\n", splines);
+    EXPECT_TRUE(says(layered, "quadratic_bspline, apic, usl suit the case"));
+  }
 }
 
 // ---- physics: auto ----
