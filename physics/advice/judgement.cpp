@@ -173,7 +173,6 @@ void measure(Judgement& judgement, const Case& definition, const StepCost& own) 
       // It cannot be computed in that way; the ratio above stands.
     }
   }
-  take(judgement);
 }
 
 Node record(const Judgement& judgement) {

@@ -47,7 +47,8 @@ struct Judgement {
 /// Costs are relative, in the ratios of docs/performance.md: the same on every machine.
 Judgement judge(const Case& definition);
 
-/// With costs in seconds on this machine: `own` is what steps of the case cost; the others are tried for a moment.
+/// Adds costs in seconds on this machine, for people: `own` is what steps of the case cost; the others are tried for a
+/// moment. The choice stays that of `judge`: a busy machine must not change it.
 void measure(Judgement& judgement, const Case& definition, const StepCost& own);
 
 /// The case with the model `choice`.
