@@ -1,5 +1,7 @@
 #include "core/case/case_schema.h"
 
+#include "core/case/case_tree.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -454,12 +456,6 @@ void read_materials(Case& definition, const Node& node, Problems& problems) {
   }
 }
 
-void read_schema_version(const Node& node, Problems& problems) {
-  if (node.kind != Node::Kind::scalar || node.scalar != "1")
-    problems.add(node.place,
-                 fmt::format("schema: found {}; this version of the program knows schema 1 only", description(node)));
-}
-
 Node write_materials(const Case& definition) {
   Node materials = Node::map();
   for (const auto& [name, section] : definition.materials) materials.set(name, section);
@@ -474,7 +470,7 @@ Schema<Case> make_case_schema() {
            .range = "1",
            .sentence = "Version of the case-file format.",
            .required = true},
-          [](Case&, const Node& node, Problems& problems) { read_schema_version(node, problems); },
+          [](Case&, const Node& node, Problems& problems) { check_schema_version(node, problems); },
           [](const Case&) { return Node::text("1"); })
       .text("title", &Case::title, "What the case is, in a line.", "untitled")
       .registered("physics", &Case::physics, "physics", "The physics module.")

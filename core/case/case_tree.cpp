@@ -208,6 +208,12 @@ class NamedFiles {
 
 }  // namespace
 
+void check_schema_version(const Node& version, Problems& problems) {
+  if (version.kind != Node::Kind::scalar || version.scalar != "1")
+    problems.add(version.place, fmt::format("schema: found {}; this version of the program knows schema 1 only",
+                                            description(version)));
+}
+
 Node extended(Node tree, const std::string& file) {
   return extended_along(std::move(tree), {std::filesystem::path(file).lexically_normal().string()});
 }

@@ -23,4 +23,7 @@ void apply_overrides(const std::vector<Override>& overrides, Node& tree, Problem
 /// earlier runs by their folders. Files lie beside the file that names them, or beside `case_file` if an override does.
 void resolve_files(Node& tree, const std::string& case_file, Problems& problems);
 
+/// The key `schema` of a file: this version of the program knows 1 only.
+void check_schema_version(const Node& version, Problems& problems);
+
 }  // namespace sluice

@@ -13,6 +13,7 @@
 #include "core/chart/results_table.h"
 #include "core/chart/study.h"
 #include "core/command.h"
+#include "core/output/file_aside.h"
 #include "core/output/pictures.h"
 #include "core/simulation/interrupt.h"
 #include "core/simulation/run.h"
@@ -105,10 +106,7 @@ class StudyRun {
           fmt::format("the output folder {} is not empty and holds no study; take another --output, or "
                       "overwrite it with --force",
                       folder_.string()));
-    std::error_code error;
-    fs::create_directories(folder_, error);
-    if (error)
-      throw std::runtime_error(fmt::format("the folder {} cannot be made: {}", folder_.string(), error.message()));
+    make_output_folder(folder_);
     ledger_.emplace(table, arguments_.force);
   }
 

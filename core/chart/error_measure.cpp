@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "core/case/schema.h"
+#include "core/output/csv_table.h"
 
 namespace sluice::chart {
 
@@ -26,20 +26,21 @@ std::unique_ptr<ErrorMeasure> make_error_measure(const Study& study) {
 
 RunTable::RunTable(const std::filesystem::path& file) {
   std::ifstream in(file);
-  std::string line, cell;
+  std::string line;
   if (!std::getline(in, line)) throw std::runtime_error(fmt::format("{} cannot be read", file.string()));
-  for (std::istringstream header(line); std::getline(header, cell, ',');) columns_.push_back({cell, {}});
+  for (const std::string& name : csv_cells(line)) columns_.push_back({name, {}});
   while (std::getline(in, line)) {
-    std::istringstream row(line);
-    for (auto& column : columns_) {
-      cell.clear();
-      std::getline(row, cell, ',');
+    const auto cells = csv_cells(line);
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      const char* const text = c < cells.size() ? cells[c].c_str() : "";
       char* end = nullptr;
-      const double value = std::strtod(cell.c_str(), &end);
-      column.second.push_back(end == cell.c_str() ? NAN : value);
+      const double value = std::strtod(text, &end);
+      columns_[c].second.push_back(end == text ? NAN : value);
     }
   }
 }
+
+double RelativeRms::value() const { return std::sqrt(squares_ / scale_); }
 
 const std::vector<double>* RunTable::find(const std::string& name) const {
   for (const auto& [column, values] : columns_)
@@ -179,13 +180,12 @@ class AgainstReference final : public ErrorMeasure {
 
  private:
   static double over_time(const Series& own, const Series& right) {
-    double squares = 0, scale = 0;
+    RelativeRms rms;
     for (std::size_t i = 0; i < own.time.size(); ++i) {
       const double exact = at(right, own.time[i]);
-      squares += (own.value[i] - exact) * (own.value[i] - exact);
-      scale += exact * exact;
+      rms.add(own.value[i] - exact, exact);
     }
-    return std::sqrt(squares / scale);
+    return rms.value();
   }
   ReferenceKeys keys_;
 };

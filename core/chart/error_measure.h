@@ -49,4 +49,14 @@ class RunTable {
   std::vector<std::pair<std::string, std::vector<double>>> columns_;
 };
 
+/// Root mean square of values that are added one by one, over that of a scale.
+class RelativeRms {
+ public:
+  void add(double error, double exact) { squares_ += error * error, scale_ += exact * exact; }
+  double value() const;
+
+ private:
+  double squares_ = 0, scale_ = 0;
+};
+
 }  // namespace sluice::chart

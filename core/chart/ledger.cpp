@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/output/csv_table.h"
 #include "core/output/file_aside.h"
 
 namespace sluice::chart {
@@ -18,18 +19,16 @@ constexpr const char* header =
     "factorizations,iterations\n";
 constexpr std::size_t columns = 15;
 
-std::string quoted(std::string text) {
+/// On one line, for rows are lines.
+std::string cell(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string safe;
-  for (const char c : text) safe += c == '"' ? "\"\"" : std::string(1, c);
-  return "\"" + safe + "\"";
+  return csv_text(text);
 }
 
 std::string row_of(const Entry& e) {
   const RunReport& r = e.report;
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", e.identity, quoted(e.variant), e.repetition,
-                     quoted(e.version), e.error, quoted(r.failure), quoted(r.message), r.cpu_seconds, r.process_cpu,
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", e.identity, cell(e.variant), e.repetition,
+                     cell(e.version), e.error, cell(r.failure), cell(r.message), r.cpu_seconds, r.process_cpu,
                      r.peak_memory, r.steps, r.particles, r.particle_steps, r.factorizations, r.iterations);
 }
 
@@ -56,23 +55,6 @@ Entry entry_of(const std::vector<std::string>& cells) {
 
 }  // namespace
 
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool inside = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && inside && i + 1 < line.size() && line[i + 1] == '"')
-      cells.back() += line[++i];
-    else if (c == '"')
-      inside = !inside;
-    else if (c == ',' && !inside)
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  }
-  return cells;
-}
-
 Ledger::Ledger(std::filesystem::path file, bool start_anew) : file_(std::move(file)) {
   if (!start_anew && std::filesystem::exists(file_)) read();
   std::string text = header;
@@ -92,7 +74,7 @@ void Ledger::read() {
         fmt::format("{} is no table of runs of this version; `--force` begins anew", file_.string()));
   text.erase(0, std::string(header).size());
   for (std::size_t end; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1)) {
-    const auto cells = cells_of(text.substr(0, end));
+    const auto cells = csv_cells(text.substr(0, end));
     if (cells.size() == columns) entries_.push_back(entry_of(cells));
   }
 }

@@ -36,7 +36,4 @@ class Ledger {
   std::ofstream out_;
 };
 
-/// A line of a table of comma-separated values, quotes resolved.
-std::vector<std::string> cells_of(const std::string& line);
-
 }  // namespace sluice::chart

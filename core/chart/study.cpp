@@ -162,7 +162,6 @@ const Schema<Drawing>& drawing_schema() {
   return schema;
 }
 
-/// A section that is read elsewhere, for the manual and for unknown keys.
 Schema<Study> make_schema() {
   return Schema<Study>("the study")
       .custom(
@@ -171,12 +170,7 @@ Schema<Study> make_schema() {
            .range = "1",
            .sentence = "Version of the format.",
            .required = true},
-          [](Study&, const Node& node, Problems& problems) {
-            if (node.kind != Node::Kind::scalar || node.scalar != "1")
-              problems.add(node.place, fmt::format("schema: found {}; this version of the program knows schema 1 "
-                                                   "only",
-                                                   description(node)));
-          },
+          [](Study&, const Node& node, Problems& problems) { check_schema_version(node, problems); },
           [](const Study&) { return Node::text("1"); })
       .text("title", &Study::title, "What the study is, in a line.")
       .text("case", &Study::case_file, "The case that is varied; a path from the folder of the study.")

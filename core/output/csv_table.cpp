@@ -18,37 +18,47 @@ namespace sluice {
 
 namespace {
 
-std::string quoted_if_needed(const std::string& text) {
+std::string cell_text(const CsvTable::Cell& cell) {
+  if (const auto* text = std::get_if<std::string>(&cell)) return csv_text(*text);
+  if (const auto* integer = std::get_if<std::int64_t>(&cell)) return std::to_string(*integer);
+  return fmt::format("{}", std::get<double>(cell));
+}
+
+/// The cell at `index`; NaN if it is not a number.
+double number_at(std::string_view line, std::size_t index) {
+  const auto cells = csv_cells(line);
+  double value = std::numeric_limits<double>::quiet_NaN();
+  if (index >= cells.size()) return value;
+  const std::string& cell = cells[index];
+  std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return value;
+}
+
+}  // namespace
+
+std::string csv_text(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
   return quoted + '"';
 }
 
-std::string cell_text(const CsvTable::Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return quoted_if_needed(*text);
-  if (const auto* integer = std::get_if<std::int64_t>(&cell)) return std::to_string(*integer);
-  return fmt::format("{}", std::get<double>(cell));
-}
-
-/// The cell at `index`; quotes are honoured. NaN if it is not a number.
-double number_at(std::string_view line, std::size_t index) {
-  std::size_t begin = 0, column = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i <= line.size(); ++i) {
-    if (i < line.size() && line[i] == '"') quoted = !quoted;
-    if (i < line.size() && (quoted || line[i] != ',')) continue;
-    if (column++ == index) {
-      double value = 0;
-      const auto parsed = std::from_chars(line.data() + begin, line.data() + i, value);
-      return parsed.ec == std::errc() ? value : std::numeric_limits<double>::quiet_NaN();
-    }
-    begin = i + 1;
+std::vector<std::string> csv_cells(std::string_view line) {
+  std::vector<std::string> cells(1);
+  bool inside = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && inside && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back() += line[++i];
+    else if (c == '"')
+      inside = !inside;
+    else if (c == ',' && !inside)
+      cells.emplace_back();
+    else
+      cells.back() += c;
   }
-  return std::numeric_limits<double>::quiet_NaN();
+  return cells;
 }
-
-}  // namespace
 
 CsvTable::CsvTable(std::filesystem::path path, std::vector<std::string> columns)
     : path_(std::move(path)), columns_(std::move(columns)) {
@@ -70,7 +80,7 @@ CsvTable::CsvTable(std::filesystem::path path, std::vector<std::string> columns,
 
 std::string CsvTable::header() const {
   std::string line;
-  for (const auto& column : columns_) line += (line.empty() ? "" : ",") + quoted_if_needed(column);
+  for (const auto& column : columns_) line += (line.empty() ? "" : ",") + csv_text(column);
   return line + '\n';
 }
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -38,5 +39,10 @@ class CsvTable {
   std::vector<std::string> columns_;
   std::ofstream file_;
 };
+
+/// A text as a cell: in quotes where it holds a comma, a quote or a new line.
+std::string csv_text(const std::string& text);
+/// The cells of a line, quotes resolved.
+std::vector<std::string> csv_cells(std::string_view line);
 
 }  // namespace sluice

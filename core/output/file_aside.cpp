@@ -1,6 +1,7 @@
 #include "core/output/file_aside.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -49,6 +50,14 @@ void replace_text_file(const std::filesystem::path& target, const std::string& t
   file.close();
   if (!file) throw std::runtime_error(target.string() + ": cannot be written");
   aside.commit();
+}
+
+void make_output_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder))
+    throw std::runtime_error(fmt::format("the output folder {} cannot be made: {}", folder.string(),
+                                         error ? error.message() : "there is a file of this name"));
 }
 
 }  // namespace sluice

@@ -33,4 +33,7 @@ class FileAside {
 /// Writes a whole text file in this way. Throws std::runtime_error naming the file.
 void replace_text_file(const std::filesystem::path& target, const std::string& text);
 
+/// Makes the folder of an output, and those above it. Throws std::runtime_error naming it.
+void make_output_folder(const std::filesystem::path& folder);
+
 }  // namespace sluice

@@ -12,6 +12,7 @@
 #include "core/case/resolved_case.h"
 #include "core/output/archive.h"
 #include "core/output/csv_table.h"
+#include "core/output/file_aside.h"
 #include "core/output/observation.h"
 #include "core/output/pictures.h"
 #include "core/output/results.h"
@@ -61,13 +62,6 @@ void check_folder(const RunOptions& options) {
         fmt::format("the output folder {} is not empty; take another --output, continue it with --resume, or "
                     "overwrite it with --force",
                     options.folder.string()));
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw std::runtime_error(fmt::format("the output folder {} cannot be made: {}", folder.string(), error.message()));
 }
 
 /// CPU time of this process, all threads [s].
@@ -135,7 +129,7 @@ class Run {
     require_pictured_fields(case_, simulation_->particles());
     simulation_->require_time_step();
     // From here on the folder changes; what the user did wrong has been found by now.
-    make_folder(options_.folder);
+    make_output_folder(options_.folder);
     if (!options.resume) clear_folder();
     open_outputs();
   }

@@ -70,11 +70,7 @@ void prepare_folder(const fs::path& folder, bool force) {
   if (fs::is_directory(folder) && !fs::is_empty(folder) && !force)
     throw CaseError(fmt::format(
         "the output folder {} is not empty; take another --output, or overwrite it with --force", folder.string()));
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder))
-    throw std::runtime_error(fmt::format("the output folder {} cannot be made: {}", folder.string(),
-                                         error ? error.message() : "there is a file of this name"));
+  make_output_folder(folder);
   for (const char* name : {"element.csv", "reference.csv", "pictures/element.png"}) fs::remove(folder / name);
 }
 

@@ -119,12 +119,6 @@ const Schema<StageKeys>& stage_schema() {
   return schema;
 }
 
-void read_schema_version(const Node& node, Problems& problems) {
-  if (node.kind != Node::Kind::scalar || node.scalar != "1")
-    problems.add(node.place,
-                 fmt::format("schema: found {}; this version of the program knows schema 1 only", description(node)));
-}
-
 void read_material(Keys& keys, const Node& node, Problems& problems) {
   keys.material = node;
   if (node.kind != Node::Kind::map) {
@@ -146,7 +140,7 @@ Schema<Keys> make_schema() {
                          .range = "1",
                          .sentence = "Version of the format.",
                          .required = true},
-                        [](Keys&, const Node& node, Problems& problems) { read_schema_version(node, problems); },
+                        [](Keys&, const Node& node, Problems& problems) { check_schema_version(node, problems); },
                         [](const Keys&) { return Node::text("1"); })
                     .text("title", &Keys::title, "What the test is, in a line.", "untitled")
                     .custom({.name = "material",

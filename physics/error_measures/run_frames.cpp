@@ -89,8 +89,6 @@ double load_of(const Case& definition) {
   return loads.front().pressure->at(0);
 }
 
-double RelativeRms::value() const { return std::sqrt(squares_ / scale_); }
-
 bool add_error_measure(const std::string& name, const std::string& summary,
                        double (*evaluate)(const chart::FinishedRun& run)) {
   return chart::error_measure_registry().add(name, {summary, [] { return no_keys().docs(); }},

@@ -46,16 +46,6 @@ exact::SaturatedSoil saturated_soil_of(const Case& definition);
 /// The constant pressure of the only surface load [Pa].
 double load_of(const Case& definition);
 
-/// Root mean square of values that are added one by one, over that of a scale.
-class RelativeRms {
- public:
-  void add(double error, double exact) { squares_ += error * error, scale_ += exact * exact; }
-  double value() const;
-
- private:
-  double squares_ = 0, scale_ = 0;
-};
-
 /// Registers a measure that has no keys: `evaluate` is its whole.
 bool add_error_measure(const std::string& name, const std::string& summary,
                        double (*evaluate)(const chart::FinishedRun& run));

@@ -24,7 +24,7 @@ double error(const chart::FinishedRun& run) {
   const double length = extent(run.definition, 0), gravity = run.definition.gravity.at(0);
   const double left = run.definition.bodies.front().region.bounds(run.definition.dimension())[0][0];
   const RunFrames frames(run.folder, "");
-  RelativeRms rms;
+  chart::RelativeRms rms;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const RunFrame frame = frames.at(i);
     for (std::size_t p = 0; p < frame.start.size(); ++p) {
