@@ -371,6 +371,10 @@ Schema<SchemeCase> scheme_schema() {
       .quantity("gravity_ramp", &S::gravity_ramp, unit::time, at_least(0),
                 "For `implicit_static`: time over which gravity grows from nothing to its full value.",
                 defaults.gravity_ramp)
+      .quantity("ghost_penalty", &S::ghost_penalty, unit::none, at_least(0),
+                "Of implicit steps: stiffness, in constrained moduli of the material, that holds nodes which material "
+                "hardly reaches to the displacements inside; 0 lets such nodes fly, and steps fail.",
+                defaults.ghost_penalty)
       .word("strain", &S::strain, {"jaumann", "hencky"},
             "How stress follows large strain: elasticity in rate form, turned with the material; or in logarithmic "
             "strain, "

@@ -34,10 +34,10 @@ void set_quantity(Node& section, const std::string& key, double number, const Un
 
 /// With the stiffness of the water that cannot leave: the shear modulus stays.
 void stiffen(Node& section, const SoilNumbers& soil) {
-  const double shear = soil.elasticity.shear;
-  const double lambda = soil.elasticity.lambda + soil.soil.water_bulk_modulus / soil.soil.porosity;
-  set_quantity(section, "youngs_modulus", shear * (3 * lambda + 2 * shear) / (lambda + shear), unit::stress);
-  set_quantity(section, "poisson_ratio", lambda / (2 * (lambda + shear)), unit::none);
+  IsotropicElasticity undrained = soil.elasticity;
+  undrained.lambda += soil.soil.water_bulk_modulus / soil.soil.porosity;
+  set_quantity(section, "youngs_modulus", undrained.youngs_modulus(), unit::stress);
+  set_quantity(section, "poisson_ratio", undrained.poisson_ratio(), unit::none);
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ class Lines {
   void say_unknown() {
     for (const SoilNumbers& soil : scene_.soils) {
       if (case_.physics != "total_stress" || !soil.wet) continue;
-      const double poisson = soil.elasticity.lambda / (2 * (soil.elasticity.lambda + soil.elasticity.shear));
+      const double poisson = soil.elasticity.poisson_ratio();
       if (*judgement_.own != 1 || poisson > nearly_incompressible) continue;
       add("", fmt::format("undrained soil keeps its volume; with a Poisson ratio of {:.2g} '{}' does not quite (0.49 "
                           "would)",
@@ -207,7 +207,7 @@ class Lines {
     int count = 0;
     for (const SoilNumbers& soil : scene_.soils) {
       if (soil.liquid) continue;
-      const double poisson = soil.elasticity.lambda / (2 * (soil.elasticity.lambda + soil.elasticity.shear));
+      const double poisson = soil.elasticity.poisson_ratio();
       const bool flows = soil.strength == Strength::constant && scene_.expected_strain > 1;
       if (poisson > nearly_incompressible || flows) names += fmt::format("{}'{}'", count++ > 0 ? ", " : "", soil.name);
     }

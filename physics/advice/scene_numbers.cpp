@@ -81,7 +81,7 @@ void add_advice(SoilNumbers& s, const PoresCase& pores, const SceneNumbers& scen
   s.undrained_modulus = given;
   // Nearly incompressible total stresses are those of undrained soil: the skeleton has the same shear modulus, and a
   // Poisson ratio of 0.3 makes M = 3.5 G.
-  const double poisson = s.elasticity.lambda / (2 * (s.elasticity.lambda + s.elasticity.shear));
+  const double poisson = s.elasticity.poisson_ratio();
   s.soil.modulus = pores.constrained_modulus.value_or(poisson > 0.45 ? 3.5 * s.elasticity.shear : given);
 }
 

@@ -18,7 +18,7 @@ double radius_of(const Case& definition) {
 double error(const chart::FinishedRun& run) {
   const Case& definition = run.definition;
   const auto elasticity = only_material(definition)->elasticity();
-  const exact::CryerSphere sphere(elasticity.lambda / (2 * (elasticity.lambda + elasticity.shear)));
+  const exact::CryerSphere sphere(elasticity.poisson_ratio());
   const double radius = radius_of(definition), load = load_of(definition);
   const double rate = saturated_soil_of(definition).consolidation_coefficient() / (radius * radius);
   const RunFrames frames(run.folder, "pore_pressure");

@@ -36,6 +36,8 @@ struct IsotropicElasticity {
   double lambda = 0;
   double shear = 0;
   double constrained_modulus() const { return lambda + 2 * shear; }
+  double youngs_modulus() const { return shear * (3 * lambda + 2 * shear) / (lambda + shear); }
+  double poisson_ratio() const { return lambda / (2 * (lambda + shear)); }
   /// Elastic energy per volume [J/m3] at stress xx yy zz xy (yz xz).
   double energy(std::span<const double> stress) const;
   static IsotropicElasticity from_young(double youngs_modulus, double poisson_ratio);

@@ -8,6 +8,7 @@
 #include "core/case/problems.h"
 #include "core/simulation/guard.h"
 #include "core/simulation/physics_module.h"
+#include "physics/statics/ghost_penalty.h"
 #include "solvers/sparse_cholesky.h"
 
 namespace sluice {
@@ -61,6 +62,7 @@ struct ImplicitStep<Dim>::Forces {
   Unknowns<Dim> unknowns;
   ElasticOperator<Dim> elastic;
   StressTrial<Dim> trial;
+  Eigen::SparseMatrix<double> ghost;  // the lower triangle
   SparseCholesky cholesky;
   double dt;
   Eigen::VectorXd outside;          // forces of loads and gravity [N]
@@ -74,6 +76,7 @@ struct ImplicitStep<Dim>::Forces {
       : unknowns(scene),
         elastic(scene, stress.materials(), loads, unknowns),
         trial(scene, stress, unknowns, Kinematics::large),
+        ghost(ghost_penalty(scene, stress.materials(), unknowns, scene.scheme.ghost_penalty)),
         dt(step) {
     if (with_inertia) {
       scatter(scene, ScatterWhat::momentum);
@@ -90,7 +93,7 @@ struct ImplicitStep<Dim>::Forces {
   }
 
   void prepare() {
-    cholesky.factorize(elastic.matrix(inertia));
+    cholesky.factorize(elastic.matrix(inertia) + ghost);
     const double share = inertia > 0 ? 2 : 1;
     scale = share * std::max(outside.cwiseAbs().maxCoeff(), inside_at_start.cwiseAbs().maxCoeff());
     if (inertia > 0)
@@ -101,6 +104,7 @@ struct ImplicitStep<Dim>::Forces {
     const Eigen::Map<const Eigen::VectorXd> now(u.data(), static_cast<Eigen::Index>(u.size()));
     Eigen::Map<Eigen::VectorXd> out(f.data(), static_cast<Eigen::Index>(f.size()));
     if (!trial.apply(u, dt, f)) return false;
+    out += ghost.template selfadjointView<Eigen::Lower>() * now;
     if (inertia > 0)  // which holds what nothing else holds
       out += inside_at_start - 2 * outside + inertia * elastic.mass().cwiseProduct(now - dt * velocity);
     else
