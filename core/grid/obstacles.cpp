@@ -138,15 +138,32 @@ void Obstacles<Dim>::find(const NodeBlock<Dim>& nodes, std::size_t number, std::
       reached = reached && node[a] >= low[a] && node[a] < high[a];
     }
     if (!reached) continue;
-    const SignedDistance found = where(obstacle, place(node));
-    Contact contact{n, static_cast<std::int32_t>(number), found.distance <= hair_, {}};
-    double support = 0;
-    for (int a = 0; a < Dim; ++a) {
-      contact.out[a] = -found.normal[static_cast<std::size_t>(a)];
-      support += std::abs(contact.out[a]) * support_[a];
-    }
-    if (contact.inside || (adheres && found.distance < support)) contacts.push_back(contact);
+    Contact contact{n, static_cast<std::int32_t>(number), false, {}};
+    if (acts(obstacle, place(node), &contact.inside, &contact.out)) contacts.push_back(contact);
   }
+}
+
+/// Whether an obstacle acts on a node that stands at x, from within or by its adhesion, and with which normal.
+template <int Dim>
+bool Obstacles<Dim>::acts(const Obstacle& obstacle, const Vector<Dim>& x, bool* inside, Vector<Dim>* out) const {
+  const SignedDistance found = where(obstacle, x);
+  double support = 0;
+  for (int a = 0; a < Dim; ++a) {
+    (*out)[a] = -found.normal[static_cast<std::size_t>(a)];
+    support += std::abs((*out)[a]) * support_[a];
+  }
+  *inside = found.distance <= hair_;
+  return *inside || (obstacle.definition.surface.adhesion > 0 && found.distance < support);
+}
+
+template <int Dim>
+std::vector<typename Obstacles<Dim>::Hold> Obstacles<Dim>::holds_on(const Index<Dim>& node) const {
+  std::vector<Hold> all;
+  for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+    Hold hold{o, &obstacles_[o].definition.surface, false, {}};
+    if (acts(obstacles_[o], place(node), &hold.inside, &hold.out)) all.push_back(hold);
+  }
+  return all;
 }
 
 // ---- what they do ----
@@ -205,6 +222,12 @@ std::vector<std::pair<std::string, double>> Obstacles<Dim>::forces() const {
       all.emplace_back(obstacles_[o].definition.name + "_force_" + axes[a] + "_N", sum);
     }
   return all;
+}
+
+template <int Dim>
+void Obstacles<Dim>::set_forces(const std::vector<Vector<Dim>>& forces) {
+  std::fill(force_.begin(), force_.end(), Vector<Dim>{});
+  if (!force_.empty()) std::copy(forces.begin(), forces.end(), force_.begin());
 }
 
 template <int Dim>

@@ -40,6 +40,19 @@ class Obstacles {
 
   /// Makes room for so many blocks of nodes; forgets what is known of those that are there.
   void resize(std::size_t node_blocks);
+  /// What an obstacle does to a node that it holds, or, with adhesion, one that its surface is close to.
+  struct Hold {
+    std::size_t obstacle;     ///< its number
+    const FaceCase* surface;  ///< its rule
+    bool inside;              ///< if not, the surface is within the support of the node, and adheres to it
+    Vector<Dim> out;          ///< unit normal, out of the material
+  };
+  /// All that acts on a node, in the order in which it acts, with the obstacles where they are.
+  std::vector<Hold> holds_on(const Index<Dim>& node) const;
+  std::size_t count() const { return obstacles_.size(); }
+  /// Forces of the material on the obstacles [N] of a step that finds them for all blocks at once.
+  void set_forces(const std::vector<Vector<Dim>>& forces);
+
   /// Force of the material on the obstacles in the last step [N], by name and axis: NAME_force_x_N.
   std::vector<std::pair<std::string, double>> forces() const;
 
@@ -74,6 +87,7 @@ class Obstacles {
   std::array<Index<Dim>, 2> range(const NodeBlock<Dim>& nodes) const;
   Vector<Dim> place(const Index<Dim>& node) const;
   SignedDistance where(const Obstacle& obstacle, Vector<Dim> x) const;
+  bool acts(const Obstacle& obstacle, const Vector<Dim>& x, bool* inside, Vector<Dim>* out) const;
 
   std::vector<Obstacle> obstacles_;
   std::array<std::vector<double>, Dim> places_;

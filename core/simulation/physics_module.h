@@ -29,6 +29,12 @@ class PhysicsError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// No solution of a step was found. The module has given back the state before the step, so that a shorter one can be
+/// tried.
+class StepNotSolved : public PhysicsError {
+  using PhysicsError::PhysicsError;
+};
+
 template <int Dim>
 class PhysicsModule {
  public:
@@ -48,7 +54,7 @@ class PhysicsModule {
   virtual std::vector<TimeStepLimit> hard_limits(const Scene<Dim>& scene) const = 0;
   /// All limits on the next step with the safety factors of the case.
   virtual std::vector<TimeStepLimit> time_step_limits(const Scene<Dim>& scene) const = 0;
-  /// Advances the scene from time to time + dt (the caller updates time and step).
+  /// Advances the scene from time to time + dt (the caller updates time and step). May throw StepNotSolved.
   virtual void step(Scene<Dim>& scene, double dt) = 0;
 
   /// What the module itself carries from step to step, for checkpoints.

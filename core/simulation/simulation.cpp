@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/particles/fill.h"
 #include "core/simulation/guard.h"
@@ -56,11 +57,10 @@ class SimulationOf final : public Simulation {
 
   StepInfo advance(double until) override {
     const double stop = change_materials(until);
-    const TimeStepLimit dt = choose_time_step(*module_, scene_, stop);
+    TimeStepLimit dt = choose_time_step(*module_, scene_, stop);
     longest_dt_ = std::max(longest_dt_, dt.seconds);
     if (dt.name != "output" && dt.seconds < collapse * longest_dt_) throw_time_step_collapsed(scene_, dt);
-    scene_.move_boundaries(dt.seconds);
-    module_->step(scene_, dt.seconds);
+    take_step(dt);
     if (!scene_.motion.inside) removed_ += apply_outflow(scene_, definition_.outflow);
     const bool arrives = stop - scene_.time <= dt.seconds * (1 + 1e-6);
     scene_.time = arrives ? stop : scene_.time + dt.seconds;
@@ -98,7 +98,8 @@ class SimulationOf final : public Simulation {
                              scene_.travelled,
                              scene_.motion.largest_speed_squared,
                              scene_.motion.largest_strain_rate,
-                             longest_dt_};
+                             longest_dt_,
+                             solved_dt_};
     if (scene_.dashpots.any()) archive.reals["dashpots"] = scene_.dashpots.record();
     module_->store(archive);
   }
@@ -118,11 +119,31 @@ class SimulationOf final : public Simulation {
     scene_.motion.largest_speed_squared = loop[3];
     scene_.motion.largest_strain_rate = loop[4];
     longest_dt_ = loop.at(5);
+    solved_dt_ = loop.at(6);
     if (scene_.dashpots.any()) scene_.dashpots.restore(archive.reals.at("dashpots"));
     module_->restore(archive);
   }
 
  private:
+  /// A step of that length, or, where the module finds no solution, of a half, a quarter … of it. After that the length
+  /// may double from step to step.
+  void take_step(TimeStepLimit& dt) {
+    const double shortest = smallest_share * dt.seconds;
+    if (dt.seconds > solved_dt_) dt = {std::max(solved_dt_, shortest), "solution"};
+    for (;;) {
+      scene_.move_boundaries(dt.seconds);
+      try {
+        module_->step(scene_, dt.seconds);
+        break;
+      } catch (const StepNotSolved&) {
+        if (0.5 * dt.seconds < shortest) throw;
+        dt = {0.5 * dt.seconds, "solution"};
+        solved_dt_ = dt.seconds;
+      }
+    }
+    solved_dt_ *= 2;
+  }
+
   /// Makes the changes of material that are due; returns the time of the next one, at most `until`.
   double change_materials(double until) {
     bool any = false;
@@ -163,11 +184,14 @@ class SimulationOf final : public Simulation {
   Scene<Dim> scene_;
   std::unique_ptr<PhysicsModule<Dim>> module_;
   std::size_t removed_ = 0;
-  double longest_dt_ = 0;      // [s]
-  std::uint64_t changed_ = 0;  // a bit for each change of material that has been made
+  double longest_dt_ = 0;                                       // [s]
+  double solved_dt_ = std::numeric_limits<double>::infinity();  // the longest step worth a try [s]
+  std::uint64_t changed_ = 0;                                   // a bit for each change of material that has been made
 
   /// A step shorter than this share of the longest one means that the run goes nowhere.
   static constexpr double collapse = 1e-4;
+  /// The shortest step that is tried where there is no solution, as a share of the one that was to be taken.
+  static constexpr double smallest_share = 1.0 / 32;
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace sluice {
 /// What one step was.
 struct StepInfo {
   double dt = 0;        ///< [s]
-  std::string limiter;  ///< what set its length: wave, advection, strain, growth, output or fixed
+  std::string limiter;  ///< what set its length: wave, advection, strain, growth, output, fixed, solution
   double speed = 0;     ///< largest speed of a particle [m/s]
 };
 

@@ -17,16 +17,23 @@
 
 namespace sluice {
 
-/// Degrees of freedom: the components of the nodes that particles reach, from `first` on, less those that faces and
-/// obstacles fix.
+/// Which components of nodes are no unknowns.
+enum class Fixed {
+  held,  ///< those that faces and obstacles hold, friction included
+  none
+};
+
+/// Degrees of freedom: the components of the nodes that particles reach, from `first` on, less those that are fixed.
 template <int Dim>
 class Unknowns {
  public:
   explicit Unknowns(const Scene<Dim>& scene, int first = 0) : scene_(scene), first_(first) {}
+  Unknowns(const Scene<Dim>& scene, Fixed what) : scene_(scene), what_(what) {}
 
   /// The unknown of a node's component, or -1 if it is fixed. Numbers are given in order of first asking.
   std::array<int, Dim> of(const Index<Dim>& node) {
     const auto [place, fresh] = numbers_.try_emplace(key_of(node));
+    if (fresh) nodes_.push_back(node);
     if (fresh)
       for (int a = 0; a < Dim; ++a)
         place->second[static_cast<std::size_t>(a)] = fixed(node, a) || a < first_ ? -1 : count_++;
@@ -41,6 +48,8 @@ class Unknowns {
     return none;
   }
   int count() const { return count_; }
+  /// In order of first asking: with Fixed::none the components of number k are the unknowns k Dim … k Dim + Dim - 1.
+  const std::vector<Index<Dim>>& nodes() const { return nodes_; }
 
  private:
   static std::int64_t key_of(const Index<Dim>& node) {
@@ -49,6 +58,7 @@ class Unknowns {
     return key;
   }
   bool fixed(const Index<Dim>& node, int component) const {
+    if (what_ == Fixed::none) return false;
     for (int axis = 0; axis < Dim; ++axis)
       for (int side = 0; side < 2; ++side) {
         const FaceCase& face = scene_.faces.face(axis, side);
@@ -60,7 +70,9 @@ class Unknowns {
   }
 
   const Scene<Dim>& scene_;
-  int first_;
+  int first_ = 0;
+  Fixed what_ = Fixed::held;
+  std::vector<Index<Dim>> nodes_;
   std::unordered_map<std::int64_t, std::array<int, Dim>> numbers_;
   int count_ = 0;
 };

@@ -155,10 +155,11 @@ void StressTrial<Dim>::strain(double dt) {
     const StrainIncrements<Dim> own = increments(block.begin);
     scene_.nodes.load_motion(scene_.blocks, b, work.motion_tile.data());
     scene_.shape->gather_strain(scene_.view(block), work.motion_tile.data(), dt, own);
+    sound_[b] = 1;
     if (kinematics_ == Kinematics::small) {
       for (double* column : own.rotation) std::fill_n(column, block.end - block.begin, 0.0);
     } else {
-      deform(block, own);
+      sound_[b] = deform(block, own) ? 1 : 0;
     }
     if (!stress_.f_bar()) return;
     cells_.locate(scene_.view(block));
@@ -167,17 +168,21 @@ void StressTrial<Dim>::strain(double dt) {
   });
 }
 
-/// Keeps the inverse of the deformation, and makes the increments those of the middle of the step (29c).
+/// Keeps the inverse of the deformation, and makes the increments those of the middle of the step (29c). False where a
+/// particle would be turned inside out: in logarithmic strain nothing else tells.
 template <int Dim>
-void StressTrial<Dim>::deform(const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& own) {
+bool StressTrial<Dim>::deform(const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& own) {
   const Tensor<Dim> one = Tensor<Dim>::Identity();
+  bool upright = true;
   for (std::uint32_t p = block.begin; p < block.end; ++p) {
     const Tensor<Dim> l = gradient_of<Dim>(own, p - block.begin);
+    upright = upright && (one + l).determinant() > 0;
     const Tensor<Dim> inverse = (one + l).inverse();
     for (int a = 0; a < Dim; ++a)
       for (int b = 0; b < Dim; ++b) gradient_[static_cast<std::size_t>(a * Dim + b)][p] = inverse(a, b);
     set_gradient<Dim>(2 * l * (2 * one + l).inverse(), own, p - block.begin);
   }
+  return upright;
 }
 
 template <int Dim>
@@ -194,10 +199,9 @@ bool StressTrial<Dim>::update(double dt) {
   for_each_block(scene_, workspaces_, [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>&) {
     for (const Kept& kept : kept_)
       std::copy(kept.values.begin() + block.begin, kept.values.begin() + block.end, kept.column + block.begin);
-    sound_[b] = stress_.materials()
-                    .update_stress(scene_.particles, stress_.inertia(), scene_.blocks, block, increments(block.begin),
-                                   dt, scene_.time)
-                    .sound;
+    const StressReport report = stress_.materials().update_stress(scene_.particles, stress_.inertia(), scene_.blocks,
+                                                                  block, increments(block.begin), dt, scene_.time);
+    if (!report.sound) sound_[b] = 0;
     if (kinematics_ == Kinematics::large) {
       set_piola(block);
       return;

@@ -45,7 +45,7 @@ class StressTrial {
   void strain(double dt);
   void average_dilation();
   bool update(double dt);
-  void deform(const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& increments);
+  bool deform(const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& increments);
   void set_piola(const ParticleBlock<Dim>& block);
   void collect(int first, int last, std::span<double> f);
   StrainIncrements<Dim> increments(std::size_t first);

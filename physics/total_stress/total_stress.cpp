@@ -279,7 +279,7 @@ std::vector<std::pair<std::string, double>> TotalStress<Dim>::energies(const Sce
 template <int Dim>
 std::vector<std::pair<std::string, double>> TotalStress<Dim>::step_numbers() const {
   if (!implicit_.active()) return {};
-  return {{"evaluations", implicit_.evaluations()}};
+  return implicit_.numbers();
 }
 
 template <int Dim>

@@ -20,20 +20,23 @@ struct HeavyColumn {
   int steps = 20;
   std::string shape = "cubic_bspline";
   std::string strain = "hencky";
+  std::string transfer = "apic";
+  double cell = 1;  ///< in 2-D, and width of the column [m]
 };
 
 SceneText scene_of(const HeavyColumn& c) {
   const bool flat = c.dimension == 2;
   const int particles = flat ? c.per_axis * c.per_axis : c.per_axis * c.per_axis * c.per_axis;
-  return {.grid = flat ? "{min: [0 m, 0 m], max: [1 m, 56 m], cell: 1 m}"
+  return {.grid = flat ? fmt::format("{{min: [0 m, 0 m], max: [{0} m, 56 m], cell: {0} m}}", c.cell)
                        : "{min: [0 m, 0 m, 0 m], max: [1 m, 1 m, 56 m], cell: 1 m}",
           .material = "{model: linear_elastic, density: 80 kg/m3, youngs_modulus: 20 kPa, poisson_ratio: 0}",
           .bodies = fmt::format("  - {{material: soil, particles_per_cell: {}, box: {{min: {}, max: {}}}}}", particles,
-                                flat ? "[0 m, 0 m]" : "[0 m, 0 m, 0 m]", flat ? "[1 m, 50 m]" : "[1 m, 1 m, 50 m]"),
+                                flat ? "[0 m, 0 m]" : "[0 m, 0 m, 0 m]",
+                                flat ? fmt::format("[{} m, 50 m]", c.cell) : "[1 m, 1 m, 50 m]"),
           .gravity = flat ? "[0, -10 m/s2]" : "[0, 0, -10 m/s2]",
           .boundaries = flat ? "{left: roller, right: roller, bottom: roller}"
                              : "{left: roller, right: roller, front: roller, back: roller, bottom: roller}",
-          .scheme = Scheme{.shape = c.shape}.with(fmt::format(
+          .scheme = Scheme{.shape = c.shape, .transfer = c.transfer}.with(fmt::format(
               "strain: {}, integration: implicit_static, gravity_ramp: 1 s, time_step: {} s", c.strain, 1.0 / c.steps)),
           .end_time = 1};
 }
@@ -95,6 +98,28 @@ TEST(ImplicitStatic, IsAsExactAsTheParticlesAreMany) {
   EXPECT_GT(two, 5 * compact({.per_axis = 6, .shape = "quadratic_bspline"}).stress);
 }
 
+// CPDI and CPDI2 follow the compression without gaps: places are of second order in the cell (measured: 3.6 and 3.9
+// times better on halved cells), with 2 particles an axis, and stresses in cells of a metre as good as with 9 times as
+// many particles on B-splines. The control: the boxes of uGIMP keep their size and overlap, and smaller cells do not
+// help.
+TEST(ImplicitStatic, CompactsAHeavyColumnOfDomains) {
+  for (const std::string shape : {"cpdi", "cpdi2", "ugimp"}) {
+    SCOPED_TRACE(shape);
+    std::vector<ColumnErrors> errors;
+    for (const double cell : {2.0, 1.0, 0.5})
+      errors.push_back(compact({.per_axis = 2, .shape = shape, .transfer = "flip", .cell = cell}));
+    if (shape == "ugimp") {
+      EXPECT_LT(errors[0].place / errors[2].place, 1.5);
+      EXPECT_GT(errors[2].stress, 5e-3);
+    } else {
+      EXPECT_GT(errors[0].place / errors[1].place, 3.3);
+      EXPECT_GT(errors[1].place / errors[2].place, 3.6);
+      EXPECT_LT(errors[1].stress, 7e-4);
+      EXPECT_LT(errors[2].stress, 5e-4);
+    }
+  }
+}
+
 // ---- a thick cylinder ----
 
 SceneText quarter(double pressure, double cell = 0.1) {
@@ -130,7 +155,8 @@ TEST(ImplicitStatic, WidensAThickCylinder) {
   EXPECT_NEAR(outward_motion(1.5, 0.05), 1, 0.03);
 }
 
-// The negative control: 8 % above the collapse pressure there is no equilibrium, and the run says so.
+// The negative control: 8 % above the collapse pressure there is no equilibrium, and the run says so, after it has come
+// within a 32nd of a step, 0.3 %, of the pressure that this grid carries: 2 % less than the exact one.
 TEST(ImplicitStatic, SaysThatThereIsNoEquilibrium) {
   const auto simulation = simulate(quarter(1.08 * cylinder.collapse_pressure()));
   try {
@@ -138,8 +164,9 @@ TEST(ImplicitStatic, SaysThatThereIsNoEquilibrium) {
     FAIL() << "reached the end";
   } catch (const PhysicsError& error) {
     const std::string message = error.what();
-    for (const char* part : {"no equilibrium was found at the end of step 10 at time 1 s", "scheme.tolerance: 1e-06",
-                             "most near (", "implicit_newmark", "`time_step`"})
+    EXPECT_NEAR(1.08 * simulation->time(), 1, 0.025);
+    for (const char* part : {"no equilibrium was found at the end of step ", " at time 0.9", "0.00313 s after the one",
+                             "scheme.tolerance: 1e-06", "most near (", "implicit_newmark", "`time_step`"})
       EXPECT_NE(message.find(part), std::string::npos) << message;
   }
 }
@@ -166,7 +193,7 @@ struct Vibration {
   double energy;  ///< largest change of the total energy over the first
 };
 
-Vibration vibrate(const std::string& transfer, int steps) {
+Vibration vibrate(const std::string& transfer, int steps, const std::string& shape = "quadratic_bspline") {
   constexpr double length = 25, speed = 10, v0 = 0.01;
   const double beta = std::numbers::pi / (2 * length), period = 2 * std::numbers::pi / (beta * speed);
   const auto simulation =
@@ -174,7 +201,7 @@ Vibration vibrate(const std::string& transfer, int steps) {
                 .material = "{model: linear_elastic, density: 1 kg/m3, youngs_modulus: 100 Pa, poisson_ratio: 0}",
                 .bodies = "  - {material: soil, box: {min: [0 m, 0 m], max: [25 m, 1 m]}}",
                 .boundaries = "{left: roller, bottom: roller, top: roller}",
-                .scheme = Scheme{.transfer = transfer}.with(
+                .scheme = Scheme{.shape = shape, .transfer = transfer}.with(
                     fmt::format("integration: implicit_newmark, tolerance: 1e-10, time_step: {} s", period / steps))});
   Particles& particles = simulation->particles();
   set_column(particles, "velocity", 0, [&](const auto& x) { return v0 * std::sin(beta * x[0]); });
@@ -214,6 +241,15 @@ TEST(ImplicitNewmark, TurnsAModeByTheAngleOfAverageAcceleration) {
       }
       EXPECT_LT(bar.energy, 0.01) << transfer << ", " << steps;
     }
+}
+
+// On any shape functions; measured within 1.5e-4 with uGIMP and CPDI.
+TEST(ImplicitNewmark, TurnsThatOnOtherShapeFunctions) {
+  for (const char* shape : {"linear", "ugimp", "cpdi", "cpdi2", "cubic_bspline"}) {
+    const Vibration bar = vibrate("flip", 10, shape);
+    EXPECT_NEAR(bar.angle / (2 * std::atan(std::numbers::pi / 10)), 1, 1e-3) << shape;
+    EXPECT_LT(bar.energy, 0.01) << shape;
+  }
 }
 
 // A body in free fall is moved exactly: positions by v t + g t^2 / 2, velocities by g t, at the end of each step.
@@ -265,17 +301,10 @@ TEST(ImplicitSteps, AreRefusedWithReasons) {
     const std::string key = fmt::format("integration: {}", word);
     expect(complaint_of(key), fmt::format("scheme.integration: {} needs `time_step`", word));
     expect(complaint_of(key), "scene.yaml:10:");
-    for (const auto& [face, what] : std::vector<std::pair<std::string, std::string>>{
-             {"{normal: fixed, friction: 0.3}", "friction"},
-             {"{normal: contact}", "contact"},
-             {"{normal: fixed, velocity: [0 m/s, 1 m/s]}", "moving face"},
-             {"{absorbing: {density: 1000 kg/m3, p_wave: 30 m/s, s_wave: 20 m/s}}", "absorbing face"}})
-      expect(complaint_of(key + ", time_step: 1 s", "{bottom: " + face + "}"),
-             fmt::format("{} knows no {}, and `boundaries.bottom` has it; take free, roller or fixed", word, what));
-    expect(complaint_of(key + ", time_step: 1 s",
-                        "{bottom: roller}\nobstacles: {plate: {box: {min: [0 m, 1 m], max: [1 "
-                        "m, 1.5 m]}}}"),
-           fmt::format("obstacles: `integration: {}` knows none", word));
+    expect(
+        complaint_of(key + ", time_step: 1 s",
+                     "{bottom: {absorbing: {density: 1000 kg/m3, p_wave: 30 m/s, s_wave: 20 m/s}}}"),
+        fmt::format("{} knows no absorbing face, and `boundaries.bottom` is one; take `integration: explicit`", word));
     expect(complaint_of(key + ", time_step: 1 s", "{bottom: roller}", "two_phase"),
            fmt::format("scheme.integration: {} is for `physics: total_stress`", word));
   }
