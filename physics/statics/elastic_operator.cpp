@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace sluice {
 
@@ -68,16 +69,17 @@ bool same_nodes(const Stencil<Dim>& a, const Stencil<Dim>& b) {
 
 template <int Dim>
 ElasticOperator<Dim>::ElasticOperator(const Scene<Dim>& scene, const Materials<Dim>& materials,
-                                      const SkeletonLoads<Dim>& loads, Unknowns<Dim>& unknowns)
-    : ElasticOperator(scene, materials, loads, unknowns, [&](std::size_t p) {
-        return materials[static_cast<std::size_t>(scene.particles.material[p])].elasticity();
-      }) {}
+                                      const SkeletonLoads<Dim>& loads, Unknowns<Dim>& unknowns, Dilation dilation)
+    : ElasticOperator(
+          scene, materials, loads, unknowns,
+          [&](std::size_t p) { return materials[static_cast<std::size_t>(scene.particles.material[p])].elasticity(); },
+          dilation) {}
 
 template <int Dim>
 ElasticOperator<Dim>::ElasticOperator(const Scene<Dim>& scene, const Materials<Dim>& materials,
                                       const SkeletonLoads<Dim>& loads, Unknowns<Dim>& unknowns,
-                                      const Elasticity& elasticity)
-    : scene_(scene), loads_(loads), unknowns_(unknowns) {
+                                      const Elasticity& elasticity, Dilation dilation)
+    : scene_(scene), loads_(loads), unknowns_(unknowns), dilation_(dilation) {
   std::vector<std::int64_t> cell;
   const std::vector<std::uint32_t> order = by_cell(scene, cell);
   for (std::size_t begin = 0; begin < order.size();) {
@@ -86,6 +88,7 @@ ElasticOperator<Dim>::ElasticOperator(const Scene<Dim>& scene, const Materials<D
     add_cell(order, begin, end, elasticity);
     begin = end;
   }
+  if (dilation == Dilation::of_cells) average_dilation(elasticity);
   Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(unknowns.count(), 3);
   for (const auto& entry : nodal_entries_) nodal(entry.row(), entry.col()) += entry.value();
   weight_ = nodal.col(0);
@@ -109,10 +112,49 @@ void ElasticOperator<Dim>::add_cell(const std::vector<std::uint32_t>& order, std
       nodal.setZero(own.count * Dim, 3);
     }
     s = own;
-    add_stiffness(s, elasticity(p), scene_.particles.columns.data(scene_.particles.volume)[p], stiffness);
+    IsotropicElasticity own_elasticity = elasticity(p);
+    if (dilation_ == Dilation::of_cells) own_elasticity.lambda = -2 * own_elasticity.shear / Dim;  // none by itself
+    add_stiffness(s, own_elasticity, scene_.particles.columns.data(scene_.particles.volume)[p], stiffness);
     add_nodal(scene_, loads_, s, p, nodal);
   }
   add_dense(s, stiffness, nodal);
+}
+
+/// With sigma = k theta I + 2 G dev(eps), k = lambda + 2 G / Dim, and theta the mean over a cell, the stiffness of
+/// volume changes is k b b^T / V, where b = sum V_p grad N over the cell, V its volume and k its mean.
+template <int Dim>
+void ElasticOperator<Dim>::average_dilation(const Elasticity& elasticity) {
+  struct Cell {
+    int number;
+    double volume = 0, modulus = 0;  // V and V k
+  };
+  std::map<Index<Dim>, Cell> cells;
+  std::vector<Eigen::Triplet<double>> entries;
+  const double shift = scene_.shape->node_shift();
+  const Particles& ps = scene_.particles;
+  for (std::size_t p = 0; p < ps.size(); ++p) {
+    Index<Dim> place;
+    for (int a = 0; a < Dim; ++a) {
+      const double x = ps.columns.data(ps.position, a)[p] - scene_.grid.min[a];
+      place[a] = static_cast<int>(std::floor(x / scene_.grid.cell[a] - shift));
+    }
+    Cell& cell = cells.try_emplace(scene_.grid.wrapped(place), Cell{static_cast<int>(cells.size())}).first->second;
+    const IsotropicElasticity e = elasticity(p);
+    const double volume = ps.columns.data(ps.volume)[p];
+    cell.volume += volume;
+    cell.modulus += volume * (e.lambda + 2 * e.shear / Dim);
+    const Stencil<Dim> s = stencil_at(scene_, p);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(s.count); ++i) {
+      const auto own = unknowns_.of(s.node[i]);
+      for (std::size_t a = 0; a < Dim; ++a)
+        if (own[a] >= 0) entries.emplace_back(own[a], cell.number, volume * s.gradient[i][a]);
+    }
+  }
+  Eigen::VectorXd root(static_cast<Eigen::Index>(cells.size()));
+  for (const auto& [place, cell] : cells) root[cell.number] = std::sqrt(cell.modulus) / cell.volume;
+  cell_dilation_.resize(unknowns_.count(), static_cast<Eigen::Index>(cells.size()));
+  cell_dilation_.setFromTriplets(entries.begin(), entries.end());
+  cell_dilation_ = cell_dilation_ * root.asDiagonal();
 }
 
 template <int Dim>
@@ -138,6 +180,8 @@ template <int Dim>
 Eigen::SparseMatrix<double> ElasticOperator<Dim>::matrix(double inertia) const {
   Eigen::SparseMatrix<double> k(unknowns_.count(), unknowns_.count());
   k.setFromTriplets(entries_.begin(), entries_.end());
+  if (dilation_ == Dilation::of_cells)
+    k += Eigen::SparseMatrix<double>(cell_dilation_ * cell_dilation_.transpose()).triangularView<Eigen::Lower>();
   for (int i = 0; i < unknowns_.count(); ++i) k.coeffRef(i, i) += spring_[i] + inertia * mass_[i];
   return k;
 }

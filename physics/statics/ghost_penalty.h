@@ -1,5 +1,5 @@
 /// Ghost penalty: holds nodes that material hardly reaches to a straight continuation of the displacements inside.
-/// docs/theory.md, eq. (29k).
+/// docs/theory.md, eq. (29h).
 ///
 /// Where the edge of a body cuts little off the support of a node, that node's stiffness is a small number times a
 /// force that need not be as small, and Newton's method is sent away by displacements of many cells. The penalty is on

@@ -81,7 +81,8 @@ struct ImplicitStep<Dim>::Forces {
   Forces(Scene<Dim>& scene, const StressUpdate<Dim>& stress, const SkeletonLoads<Dim>& skeleton_loads, double step,
          bool with_inertia)
       : unknowns(scene, Fixed::none),
-        elastic(scene, stress.materials(), skeleton_loads, unknowns),
+        elastic(scene, stress.materials(), skeleton_loads, unknowns,
+                stress.f_bar() ? Dilation::of_cells : Dilation::at_points),
         trial(scene, stress, unknowns, Kinematics::large),
         ghost(ghost_penalty(scene, stress.materials(), unknowns, scene.scheme.ghost_penalty)),
         dt(step),
