@@ -119,7 +119,7 @@ class SimulationOf final : public Simulation {
     scene_.motion.largest_speed_squared = loop[3];
     scene_.motion.largest_strain_rate = loop[4];
     longest_dt_ = loop.at(5);
-    solved_dt_ = loop.at(6);
+    if (loop.size() > 6) solved_dt_ = loop[6];  // older checkpoints have none
     if (scene_.dashpots.any()) scene_.dashpots.restore(archive.reals.at("dashpots"));
     module_->restore(archive);
   }

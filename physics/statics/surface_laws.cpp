@@ -126,27 +126,31 @@ void SurfaceLaws<Dim>::reduce(Law& law) {
       rubs = rubs || displacement_[i] != law.displacement[a];
     }
   }
-  law.dragged = rubs && !along && law.rule->tangential == FaceCase::Tangential::friction;
+  law.dragged = rubs && law.rule->tangential == FaceCase::Tangential::friction;
   if (!law.normal_given) law.share = std::sqrt(free) < 1e-9 ? 0 : std::sqrt(free);
   if (law.normal_given && !along && !law.dragged) law.share = 0;
 }
 
-/// Friction on a node that others drag along takes some of what they supply.
+/// Friction on a node that others drag along: against its slip, of which `slip` has what is free. What it takes from
+/// components that are given, those supply who give them. Returns the force on the node.
 template <int Dim>
-void SurfaceLaws<Dim>::rub(const Law& law, double most) {
-  Vector<Dim> slip{};
+Vector<Dim> SurfaceLaws<Dim>::rub(const Law& law, const Vector<Dim>& slip, double most) {
+  Vector<Dim> all = slip;
   double size = 0;
   for (int a = 0; a < Dim; ++a) {
     const std::size_t i = law.first + static_cast<std::size_t>(a);
-    if (given(static_cast<int>(i)) && owner_[i] != law.owner) slip[a] = displacement_[i] - law.displacement[a];
-    size += slip[a] * slip[a];
+    const bool along = law.out[a] * law.out[a] < 1e-12;
+    if (given(static_cast<int>(i)) && along) all[a] = displacement_[i] - law.displacement[a];
+    size += all[a] * all[a];
   }
   for (int a = 0; a < Dim; ++a) {
-    if (slip[a] == 0) continue;
-    const double force = most * slip[a] / std::sqrt(size) / scale_;  // of the node on the surface
-    force_[static_cast<std::size_t>(law.owner)][a] += force;
-    force_[static_cast<std::size_t>(owner_[law.first + static_cast<std::size_t>(a)])][a] -= force;
+    const std::size_t i = law.first + static_cast<std::size_t>(a);
+    all[a] *= -most / std::sqrt(size);
+    if (!given(static_cast<int>(i))) continue;
+    force_[static_cast<std::size_t>(law.owner)][a] -= all[a] / scale_;
+    force_[static_cast<std::size_t>(owner_[i])][a] += all[a] / scale_;
   }
+  return all;
 }
 
 template <int Dim>
@@ -202,27 +206,30 @@ void SurfaceLaws<Dim>::impose(Law& law, std::span<const double> u, const Eigen::
   const double pressing = !law.touches ? 0 : std::max(0.0, (fixed ? 0 : k * open) - across);
   const double normal = law.normal_given || !law.closed ? dot<Dim>(needed, out) : k * open;
 
-  Vector<Dim> along, trial;
+  Vector<Dim> along, slip, supplied;
   double size = 0;
   const double needed_normal = dot<Dim>(needed, out), gap_normal = dot<Dim>(gap, out);
   for (int a = 0; a < Dim; ++a) {
     along[a] = needed[a] - needed_normal * out[a];
-    trial[a] = along[a] - law.stiffness * (gap[a] - gap_normal * out[a]);
-    size += trial[a] * trial[a];
+    slip[a] = gap[a] - gap_normal * out[a];
+    supplied[a] = along[a] - law.stiffness * slip[a];
+    size += supplied[a] * supplied[a];
   }
   double most = 0;
   if (law.rule->tangential == FaceCase::Tangential::fixed) most = law.closed ? std::numeric_limits<double>::max() : 0;
   if (law.rule->tangential == FaceCase::Tangential::friction)
     most = law.rule->friction * std::max(0.0, pressing - loaded) + law.adhesion;
-  if (law.dragged) rub(law, most);
   size = std::sqrt(size);
-  law.sticks = size <= most && most > 0;
-  const double share = size <= most ? 1 : most / size;
+  law.sticks = !law.dragged && size <= most && most > 0;
+  if (law.dragged)
+    supplied = rub(law, slip, most);
+  else if (size > most)
+    for (double& component : supplied) component *= most / size;
   Vector<Dim>& force = force_[static_cast<std::size_t>(law.owner)];
   for (int a = 0; a < Dim; ++a) {
     const std::size_t i = law.first + static_cast<std::size_t>(a);
     if (given(static_cast<int>(i))) continue;
-    const double left = along[a] - share * trial[a] + normal * out[a];
+    const double left = along[a] - supplied[a] + normal * out[a];
     force[a] -= (needed[a] - left) / scale_;
     f[i] = left;
   }

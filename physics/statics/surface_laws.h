@@ -50,7 +50,7 @@ class SurfaceLaws {
     const FaceCase* rule;
     bool touches;  // if not, the surface adheres only
     bool normal_given;
-    bool dragged;     // along the surface by others
+    bool dragged;     // along the surface, in some direction, by others
     Vector<Dim> out;  // unit normal, out of the material; where the normal is not given, in what is free
     double share;     // of the surface's normal that is in what is free
     Vector<Dim> displacement, velocity;
@@ -64,7 +64,7 @@ class SurfaceLaws {
   void reduce(Law& law);
   std::vector<Vector<Dim>> areas(const Unknowns<Dim>& unknowns);
   void impose(Law& law, std::span<const double> u, const Eigen::VectorXd& loads, std::span<double> f);
-  void rub(const Law& law, double most);
+  Vector<Dim> rub(const Law& law, const Vector<Dim>& slip, double most);
 
   Scene<Dim>& scene_;
   double dt_, scale_;
