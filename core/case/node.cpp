@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -144,21 +145,52 @@ std::string missing_file_message(const std::filesystem::path& path) {
   return message;
 }
 
+/// Counts the documents of a text. yaml-cpp's LoadAll makes documents of nothing for ever where one would begin with
+/// what cannot begin one, such as a comma: here that is a syntax error.
+class DocumentCounter : public YAML::EventHandler {
+ public:
+  explicit DocumentCounter(const std::string& text) {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    while (parser.HandleNextDocument(*this)) {
+    }
+  }
+  std::size_t count() const { return count_; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (count_ > 0 && mark.pos == start_.pos) throw YAML::ParserException(mark, "nothing can begin like this");
+    start_ = mark;
+    ++count_;
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+ private:
+  std::size_t count_ = 0;
+  YAML::Mark start_;
+};
+
 }  // namespace
 
 Node read_yaml_text(const std::string& text, const std::string& name) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    const std::size_t documents = DocumentCounter(text).count();
     const Place start{name, 1, 1};
-    if (documents.empty()) {
+    if (documents == 0) {
       Node nothing;
       nothing.place = start;
       return nothing;
     }
-    Node node = TreeReader(name).read(documents[0], start);
-    if (documents.size() > 1)
-      throw CaseError(start, fmt::format("the file holds {} YAML documents (separated by ---); it must hold one",
-                                         documents.size()));
+    Node node = TreeReader(name).read(YAML::Load(text), start);
+    if (documents > 1)
+      throw CaseError(start,
+                      fmt::format("the file holds {} YAML documents (separated by ---); it must hold one", documents));
     return node;
   } catch (const YAML::Exception& error) {
     const Place place =

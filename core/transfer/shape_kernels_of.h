@@ -9,7 +9,7 @@ namespace sluice {
 /// What shape functions have in common that take particles as points. A shape is a struct of static members for one
 /// axis; several axes are products:
 ///   nodes, reach, outside  nodes that a particle takes; ShapeKernels::reach and outside
-///   smooth, hair, negligible_weight  see ShapeKernels and linear.cpp
+///   smooth, hair, negligible_weight  see ShapeKernels and linear.h
 ///   evaluate(place, value, slope, distance)  N, dN/dx [1/cells], and the distances x_i - x of the nodes [cells]
 ///   affine(place, value, distance, weight)   APIC's weights [1/cells]; moment_weights does, if nothing is shorter
 ///   node_offset(i, n)  place of node i on an axis of n cells, in cells from the lower wall

@@ -175,6 +175,13 @@ void measure(Judgement& judgement, const Case& definition, const StepCost& own) 
   }
 }
 
+std::string error_key(const std::string& model) {
+  std::string key = "error_of_" + model;
+  std::ranges::replace(key, ' ', '_');
+  std::ranges::replace(key, '-', '_');
+  return key;
+}
+
 Node record(const Judgement& judgement) {
   const Choice& taken = judgement.choices[judgement.taken];
   // What decides is where the model just simpler than full fails, if the full one is taken.
@@ -184,10 +191,7 @@ Node record(const Judgement& judgement) {
   map.set("model", Node::text(taken.name));
   number("tolerance", judgement.scene.asked.tolerance);
   for (const Choice& choice : judgement.choices) {
-    std::string key = "error_of_" + choice.name;
-    std::ranges::replace(key, ' ', '_');
-    std::ranges::replace(key, '-', '_');
-    number(key.c_str(), choice.demand.error);
+    number(error_key(choice.name).c_str(), choice.demand.error);
   }
   if (demand.material.empty()) return map;
   map.set("material", Node::text(demand.material));

@@ -62,5 +62,7 @@ std::vector<std::string> lines(const Judgement& judgement, const Case& definitio
 
 /// The verdict with its numbers, for the results.
 Node record(const Judgement& judgement);
+/// The key in it of the error of a model: "error_of_undrained_total_stress".
+std::string error_key(const std::string& model);
 
 }  // namespace sluice::advice

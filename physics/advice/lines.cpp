@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "core/simulation/progress.h"
 #include "physics/advice/judgement.h"
@@ -150,8 +151,28 @@ class Lines {
     if (scene_.any_liquid()) return;
     if (case_.physics == "two_phase")
       add("model", "the case models more than it needs: nothing holds water; take `physics: total_stress`");
+    else if (scene_.asked.verdict)
+      say_verdict();
     else if (scene_.any_unknown() && case_.physics == "total_stress")
       add("model", "total stresses; with advice.materials.NAME.permeability it is judged whether its water may drain");
+  }
+
+  /// Of `physics: auto`, where it has made total stresses of the case, which say nothing of water any more.
+  void say_verdict() {
+    const Node& verdict = scene_.asked.verdict;
+    const auto error_of = [&](const std::string& model) {
+      const Node* const found = verdict.find(error_key(model));
+      return found == nullptr ? "unknown" : percent(std::strtod(found->scalar.c_str(), nullptr));
+    };
+    const Node* const model = verdict.find("model");
+    const std::string taken = model == nullptr ? "" : model->scalar;
+    std::string others;
+    for (const Choice& choice : judgement_.choices)
+      if (choice.name != taken)
+        others += fmt::format("{}{} {}", others.empty() ? "" : ", ", choice.name, error_of(choice.name));
+    add("model", fmt::format("{} was taken by `physics: auto`: the cheapest within {} (error {})", taken,
+                             percent(scene_.asked.tolerance), error_of(taken)));
+    add("", "errors of the others: " + others);
   }
 
   // ---- dimension, cells, scheme ----

@@ -241,9 +241,11 @@ double PressureEquation<Dim>::unevenness(std::size_t i) const {
   return sum;
 }
 
-/// Where the fill passes one half between two vertices, linearly: the share of the line that is inside.
+/// Where the fill passes one half between two vertices, linearly: the share of the line that is inside. All of it where
+/// the surface is taken at whole vertices: a staircase.
 template <int Dim>
 double PressureEquation<Dim>::surface_share(std::size_t inside, std::size_t neighbour) const {
+  if (!water_.surface_within_cells) return 1;
   return std::clamp((fill_[inside] - 0.5) / (fill_[inside] - fill_[neighbour]), least_share, 1.0);
 }
 

@@ -54,6 +54,15 @@ TEST(Node, BrokenYamlIsLocated) {
   EXPECT_NE(message_of_text("? [1, 2]\n: 3\n"), "");
 }
 
+// Found by fuzzing: yaml-cpp's LoadAll reads such texts for ever, as documents of nothing, until there is no memory
+// left.
+TEST(Node, WhatCannotBeginADocumentIsLocated) {
+  for (const char* first : {", b: 2", "] b", "} b", ",", ": , b"})
+    EXPECT_EQ(message_of_text(std::string("# a comment\n") + first + "\na: 1\n").find("a.yaml:2:"), 0u) << first;
+  EXPECT_EQ(message_of_text("a: 1\n, b: 2\n").find("a.yaml:2:1: YAML syntax: "), 0u);
+  EXPECT_EQ(message_of_text("a: 1\n---\n, b: 2\n").find("a.yaml:3:1: YAML syntax: "), 0u);
+}
+
 TEST(Node, AliasesThatRunAwayAreErrors) {
   EXPECT_NE(message_of_text("&a [*a]\n"), "");
   std::string bomb = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
