@@ -372,7 +372,7 @@ Schema<SchemeCase> scheme_schema() {
                 "For `implicit_static`: time over which gravity grows from nothing to its full value.",
                 defaults.gravity_ramp)
       .quantity("ghost_penalty", &S::ghost_penalty, unit::none, at_least(0),
-                "Of implicit steps: stiffness, in constrained moduli of the material, that holds nodes which material "
+                "Of implicit steps: stiffness, over twice the shear modulus, that holds nodes which material "
                 "hardly reaches to the displacements inside; 0 lets such nodes fly, and steps fail.",
                 defaults.ghost_penalty)
       .word("strain", &S::strain, {"jaumann", "hencky"},

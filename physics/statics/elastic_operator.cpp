@@ -10,8 +10,9 @@ namespace sluice {
 namespace {
 
 /// A little of the lumped mass matrix is added to the stiffness, so that nodes which too few particles reach do not
-/// make it singular: 1e-8 of c^2 / h^2 for the slowest wave. A motion without strain costs no stress, however large it
-/// is.
+/// make it singular: 1e-8 of c^2 / h^2 for the slowest wave, with c^2 = 2 G / rho: how little the material can be
+/// compressed says nothing of how stiff it is against bending. A motion without strain costs no stress, however large
+/// it is.
 constexpr double regularization = 1e-8;
 
 /// Liquids do not count.
@@ -20,7 +21,7 @@ double slowest_wave_squared(const Materials<Dim>& materials) {
   double slowest = std::numeric_limits<double>::infinity();
   for (std::size_t m = 0; m < materials.size(); ++m)
     if (!materials[m].liquid())
-      slowest = std::min(slowest, materials[m].elasticity().constrained_modulus() / materials[m].density());
+      slowest = std::min(slowest, 2 * materials[m].elasticity().shear / materials[m].density());
   return std::isfinite(slowest) ? slowest : 1;
 }
 

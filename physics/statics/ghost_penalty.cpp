@@ -12,7 +12,7 @@ constexpr double least_volume = 0.1;
 
 struct NodeSums {
   double volume = 0;   // V N [m3]
-  double modulus = 0;  // V N M [N m]
+  double modulus = 0;  // V N 2 G [N m]
 };
 
 template <int Dim>
@@ -25,7 +25,7 @@ Nodes<Dim> sum_up(const Scene<Dim>& scene, const Materials<Dim>& materials) {
   for (std::size_t p = 0; p < ps.size(); ++p) {
     const Stencil<Dim> s = stencil_at(scene, p);
     const double volume = ps.columns.data(ps.volume)[p],
-                 modulus = materials[static_cast<std::size_t>(ps.material[p])].elasticity().constrained_modulus();
+                 modulus = 2 * materials[static_cast<std::size_t>(ps.material[p])].elasticity().shear;
     for (int i = 0; i < s.count; ++i) {
       NodeSums& node = nodes[s.node[static_cast<std::size_t>(i)]];
       node.volume += volume * s.value[static_cast<std::size_t>(i)];
