@@ -11,6 +11,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <random>
 #include <sstream>
 
@@ -143,6 +144,8 @@ void fuzz(const std::filesystem::path& folder, const Read& read) {
     EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 20)
         << "as good as hangs";  // of the processor
   }
+  if (std::getenv("SLUICE_FUZZ_SECONDS") != nullptr)
+    std::cout << accepted << " files accepted, " << refused << " refused\n";
   // The damage is neither too little nor too much to find anything.
   EXPECT_GT(accepted, 0u);
   EXPECT_GT(refused, 10u);
