@@ -165,16 +165,17 @@ void Obstacles<Dim>::find(const NodeBlock<Dim>& nodes, std::size_t number, std::
 
 // ---- around them ----
 
-/// -1: none reaches the node.
+/// -1: none reaches the node. `normal` is that of its surface.
 template <int Dim>
-int Obstacles<Dim>::nearest_within_support(const Index<Dim>& node) const {
+int Obstacles<Dim>::nearest_within_support(const Index<Dim>& node, Vector<Dim>& normal) const {
   int nearest = -1;
   double least = 0;
   for (std::size_t o = 0; o < obstacles_.size(); ++o) {
     const SignedDistance found = where(obstacles_[o], place(node));
-    Vector<Dim> normal;
-    for (int a = 0; a < Dim; ++a) normal[a] = found.normal[static_cast<std::size_t>(a)];
-    if (found.distance >= support_along(normal) - hair_ || (nearest >= 0 && found.distance >= least)) continue;
+    Vector<Dim> out;
+    for (int a = 0; a < Dim; ++a) out[a] = found.normal[static_cast<std::size_t>(a)];
+    if (found.distance >= support_along(out) - hair_ || (nearest >= 0 && found.distance >= least)) continue;
+    normal = out;
     nearest = static_cast<int>(o);
     least = found.distance;
   }
@@ -194,7 +195,8 @@ void Obstacles<Dim>::note_faces(const Faces<Dim>& faces) {
 
 template <int Dim>
 typename Obstacles<Dim>::Near Obstacles<Dim>::near_of(const Index<Dim>& node) const {
-  Near near{0, nearest_within_support(node), {}, {}};
+  Near near{};
+  near.obstacle = nearest_within_support(node, near.normal);
   near.bound.fill(near.obstacle >= 0);
   for (const GridFace& face : grid_faces_)
     if (node[face.axis] == face.layer) {

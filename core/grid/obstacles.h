@@ -49,6 +49,7 @@ class Obstacles {
     std::int32_t node, obstacle;  ///< the nearest one
     std::array<bool, Dim> bound;  ///< by axis: whether the surface acts along it; not on a face of the grid that gives
     std::array<bool, Dim> held;   ///< by axis: on a face of the grid that is fixed at rest
+    Vector<Dim> normal{};         ///< of the nearest surface, out of the obstacle
     Vector<Dim> traction{};       ///< force of the fluid's pressure on the surface, taken back from the node [N]
   };
   /// On which faces of the grid nodes are: to be called before any surroundings are asked for.
@@ -108,7 +109,7 @@ class Obstacles {
   void find(const NodeBlock<Dim>& nodes, std::size_t number, std::vector<Contact>& contacts) const;
   bool near(const Obstacle& obstacle, const NodeBlock<Dim>& nodes, const Vector<Dim>& margin) const;
   double support_along(const Vector<Dim>& normal) const;
-  int nearest_within_support(const Index<Dim>& node) const;
+  int nearest_within_support(const Index<Dim>& node, Vector<Dim>& normal) const;
   Near near_of(const Index<Dim>& node) const;
   std::array<Index<Dim>, 2> range(const NodeBlock<Dim>& nodes) const;
   Vector<Dim> place(const Index<Dim>& node) const;

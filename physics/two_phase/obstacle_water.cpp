@@ -7,8 +7,8 @@
 namespace sluice {
 
 template <int Dim>
-ObstacleWater<Dim>::ObstacleWater(const Case& definition, const WaterCase& water, const PoreWater<Dim>& pores)
-    : pores_(pores), active_(!definition.obstacles.empty() && water.formulation != Formulation::explicit_) {
+ObstacleWater<Dim>::ObstacleWater(const Case& definition, const PoreWater<Dim>& pores)
+    : pores_(pores), active_(!definition.obstacles.empty()) {
   if (active_) linear_ = shape_registry<Dim>().find("linear", {})();
 }
 
@@ -112,11 +112,20 @@ void ObstacleWater<Dim>::part(Scene<Dim>& scene, Items some) {
     for (const auto& near : scene.obstacles.surroundings(blocks[b], b)) {
       const Vector<Dim> wall = scene.obstacles.velocity(near.obstacle);
       double* const own = numbers + near.node * lanes * lane_width;
-      for (int a = 0; a < Dim; ++a) {
+      // Along the axis of a face that holds the node nothing flows: the other axes carry what leaves the surface.
+      double away = 0, squared = 0;
+      const auto flows = [&](int a) {
         const auto axis = static_cast<std::size_t>(a);
-        if (!near.bound[axis] || near.held[axis]) continue;
-        own[change + a] = own[a] - wall[a];
-        own[a] = wall[a];
+        return near.bound[axis] && !near.held[axis];
+      };
+      for (int a = 0; a < Dim; ++a) {
+        if (near.bound[static_cast<std::size_t>(a)]) away += (own[a] - wall[a]) * near.normal[a];
+        if (flows(a)) squared += near.normal[a] * near.normal[a];
+      }
+      for (int a = 0; a < Dim && squared > 1e-6; ++a) {
+        if (!flows(a)) continue;
+        own[change + a] = away * near.normal[a] / squared;
+        own[a] -= own[change + a];
       }
     }
   });

@@ -18,8 +18,8 @@ namespace sluice {
 template <int Dim>
 class ObstacleWater {
  public:
-  /// Does nothing in a case without obstacles, or where no pressure is solved for.
-  ObstacleWater(const Case& definition, const WaterCase& water, const PoreWater<Dim>& pores);
+  /// Does nothing in a case without obstacles.
+  ObstacleWater(const Case& definition, const PoreWater<Dim>& pores);
 
   bool active() const { return active_; }
   void declare(Particles& particles);

@@ -26,6 +26,9 @@ constexpr double volume_tolerance = 1e-9;
 /// With less room around it than this, as share of what it would have without obstacles, a vertex asks its neighbours
 /// whether it is wet: few particles are in so little room, or none. Half is the room of a vertex on a plane.
 constexpr double little_room = 0.25;
+constexpr double no_room = 1e-9;  // cells: round-off
+/// A pressure that is less than this share of those around is none: particles bring zero back with some error.
+constexpr double no_pressure = 1e-3;
 constexpr std::size_t items_a_share = 256;
 
 /// Calls body(i) for i < count in parallel, in shares of many items.
@@ -219,13 +222,14 @@ template <int Dim>
 void PressureEquation<Dim>::classify_beside_obstacle(std::size_t v) {
   const auto& vertex = grid_.vertices()[v];
   const double room = open_.around(vertex, geometry_);
-  if (!(room > 0)) {
+  if (room < no_room * geometry_.cell_volume()) {
     kind_[v] = Kind::closed;
     fill_[v] = 0;
     return;
   }
   double water = vertex_sum(v)[0], all = room;
-  if (room < little_room * vertex.share * geometry_.cell_volume())
+  little_[v] = room < little_room * vertex.share * geometry_.cell_volume() ? 1 : 0;
+  if (little_[v] != 0)
     for (const std::int32_t other : vertex.neighbour) {
       if (other < 0) continue;
       water += vertex_sum(static_cast<std::size_t>(other))[0];
@@ -233,11 +237,6 @@ void PressureEquation<Dim>::classify_beside_obstacle(std::size_t v) {
     }
   fill_[v] = water / all;
   kind_[v] = fill_[v] > 0.5 + 1e-6 ? Kind::inside : Kind::outside;
-  // What a surface does not hold parts from it, rather than be sucked back.
-  const bool parts = open_.may_part()[v] != 0 && old_[v] <= 0 && lanes_[v][3] > 0;
-  if (!parts || kind_[v] != Kind::inside) return;
-  kind_[v] = Kind::given;
-  given_[v] = 0;
 }
 
 /// The old pressure at a vertex that no particle reaches: straight on along the lines of the grid.
@@ -256,6 +255,17 @@ double PressureEquation<Dim>::continued_old(std::size_t v) const {
   return weights > 0 ? sum / weights : 0;
 }
 
+/// Whether the material leaves a surface that does not hold it, with no pressure left between the two: it parts from
+/// the surface then, rather than be sucked back.
+template <int Dim>
+bool PressureEquation<Dim>::parts(std::size_t v) const {
+  if (open_.may_part()[v] == 0 || !(lanes_[v][3] > 0)) return false;
+  double around = 0;
+  for (const std::int32_t other : grid_.vertices()[v].neighbour)
+    if (other >= 0) around = std::max(around, std::abs(old_[static_cast<std::size_t>(other)]));
+  return old_[v] <= no_pressure * around;
+}
+
 /// All cells and vertices, those of like numbers by one thread: they lie together, and meet again in the rows.
 template <int Dim>
 void PressureEquation<Dim>::sum_up(double time) {
@@ -267,9 +277,12 @@ void PressureEquation<Dim>::sum_up(double time) {
   if (open_.any()) {
     parallel_items(cells, [&](std::size_t c) { sums_[c] = cell_sum(c); });
     open_.make_room(sums_, geometry_, integrals_);
+    little_.assign(vertices, 0);
     parallel_items(vertices, [&](std::size_t v) { classify(v, time); });
-    for (std::size_t v = 0; v < vertices; ++v)
+    for (std::size_t v = 0; v < vertices; ++v) {
       if (kind_[v] == Kind::inside && !(lanes_[v][0] > 0)) old_[v] = continued_old(v);
+      if (kind_[v] == Kind::inside && parts(v)) kind_[v] = Kind::given, given_[v] = 0;
+    }
     return;
   }
   parallel_shares(std::max(cells, vertices), items_a_share, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -422,7 +435,7 @@ void PressureEquation<Dim>::write_row(std::size_t i, const ExternalPressure<Dim>
     }
     if (kind_[j] == Kind::closed) continue;
     at_surface = true;
-    expansion += continuation(i, j, n) * lanes_[j][2];
+    if (continues(i)) expansion += continuation(i, j, n) * lanes_[j][2];
     const Crossing c = crossing(i, j, outside, time);
     // With unequal permeabilities some couplings are positive; continuing those would take from the diagonal.
     const double share = row.implicit[n] < 0 ? c.share : 1;
@@ -567,13 +580,20 @@ double line_weight(std::size_t n) {
 
 }  // namespace
 
+/// Whether a vertex continues its pressure to those outside. One with little room does not: it would have to move all
+/// that lies there.
+template <int Dim>
+bool PressureEquation<Dim>::continues(std::size_t i) const {
+  return kind_[i] == Kind::inside && (!open_.any() || little_[i] == 0);
+}
+
 /// Of all lines that reach a vertex outside from vertices inside.
 template <int Dim>
 double PressureEquation<Dim>::line_weights(std::size_t j) const {
   double weight = 0;
   for (std::size_t n = 0; n < Grid::stencil; ++n) {
     const std::int32_t i = grid_.vertices()[j].neighbour[n];
-    if (i >= 0 && kind_[static_cast<std::size_t>(i)] == Kind::inside) weight += line_weight<Dim>(n);
+    if (i >= 0 && continues(static_cast<std::size_t>(i))) weight += line_weight<Dim>(n);
   }
   return weight;
 }
@@ -596,7 +616,7 @@ void PressureEquation<Dim>::extrapolate(const ExternalPressure<Dim>& outside, do
     for (std::size_t n = 0; n < Grid::stencil && all_lines > 0; ++n) {
       if (vertex.neighbour[n] < 0) continue;
       const auto i = static_cast<std::size_t>(vertex.neighbour[n]);
-      if (kind_[i] != Kind::inside) continue;
+      if (!continues(i)) continue;
       const double share = continuation(i, j, n), weight = line_weight<Dim>(n) / all_lines;
       sum += share * pressure_[i] + (weight - share) * crossing(i, j, outside, time).pressure;
     }

@@ -93,6 +93,7 @@ class PressureEquation {
   void classify(std::size_t v, double time);
   void classify_beside_obstacle(std::size_t v);
   double continued_old(std::size_t v) const;
+  bool parts(std::size_t v) const;
   bool beside_obstacle(std::size_t v) const { return open_.any() && open_.beside()[v] != 0; }
   void find_absorbing_faces(const Scene<Dim>& scene);
   CellSums<Dim> sums_around(const typename Grid::Vertex& vertex) const;
@@ -109,6 +110,7 @@ class PressureEquation {
   double surface_share(std::size_t inside, std::size_t neighbour) const;
   Crossing crossing(std::size_t inside, std::size_t neighbour, const ExternalPressure<Dim>& outside, double time) const;
   double face_flux(const typename Grid::Vertex& vertex, double time) const;
+  bool continues(std::size_t i) const;
   double line_weights(std::size_t j) const;
   double continuation(std::size_t i, std::size_t j, std::size_t n) const;
   void extrapolate(const ExternalPressure<Dim>& outside, double time);
@@ -137,6 +139,7 @@ class PressureEquation {
   std::vector<Lane> lanes_;             // by vertex
   std::vector<double> fill_;            // by vertex: share of its surroundings that is wet
   std::vector<Kind> kind_;              // by vertex
+  std::vector<char> little_;            // by vertex: an obstacle leaves little room; empty without obstacles
   std::vector<double> given_;           // by vertex [Pa]
   std::vector<double> old_, pressure_;  // by vertex [Pa]
   std::vector<double> change_;          // of the pressure in the last step, by vertex [Pa]

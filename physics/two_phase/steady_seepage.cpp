@@ -121,8 +121,10 @@ class Seepage {
         pattern.row.data(), std::vector<double>(pattern.row.size(), 0).data());
   }
 
-  /// The share of a cell that is wet, from the pressure in its middle: linear over the head of a cell.
+  /// The share of a cell that is wet, from the pressure in its middle: linear over the head of a cell. Water without
+  /// weight has no surface.
   double wet_share(std::size_t c) const {
+    if (!(head_of_cell_ > 0)) return 1;
     double mean = 0;
     for (const std::int32_t v : grid_.cells()[c].vertex) mean += pressure_[static_cast<std::size_t>(v)] / Grid::corners;
     return std::clamp(0.5 + mean / head_of_cell_, least_relative_permeability, 1.0);

@@ -27,7 +27,7 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
       loads_(read_surface_loads(definition)),
       stress_(without_pores(definition)),
       pores_(water_, read_pore_spaces(definition, water_, liquids(stress_.materials())), stress_.materials()),
-      at_obstacles_(definition, water_, pores_),
+      at_obstacles_(definition, pores_),
       relative_(definition, water_, pores_),
       outside_(loads_, water_.ponds, -water_.density * definition.gravity.back(), grid_of<Dim>(definition.grid)),
       pressure_(water_, grid_of<Dim>(definition.grid), definition.gravity.back()) {
@@ -38,6 +38,10 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
         fmt::format("scheme.integration: {} is for `physics: total_stress`; two_phase takes explicit steps of "
                     "the soil, with the pressure of the water implicit",
                     definition.scheme.integration));
+  if (!definition.obstacles.empty() && water_.formulation == Formulation::explicit_)
+    throw CaseError(definition.obstacles.front().place,
+                    "obstacles: `formulation: explicit` does not know them, for its particles have no gradient of the "
+                    "pressure that could stand at their surfaces; take `formulation: u-p` or `v-w-p`");
   if (definition.contact)
     throw CaseError(definition.contact->place,
                     "contact: the physics two_phase does not know it, for water would have to pass from body to body; "
