@@ -27,6 +27,8 @@ constexpr double volume_tolerance = 1e-9;
 /// whether it is wet: few particles are in so little room, or none. Half is the room of a vertex on a plane.
 constexpr double little_room = 0.25;
 constexpr double no_room = 1e-9;  // cells: round-off
+/// Such a vertex follows with a share of a step's delay: water that an obstacle has closed in has a pressure then.
+constexpr double little_lag = 0.1;
 /// A pressure that is less than this share of those around is none: particles bring zero back with some error.
 constexpr double no_pressure = 1e-3;
 constexpr std::size_t items_a_share = 256;
@@ -412,7 +414,8 @@ void PressureEquation<Dim>::write_row(std::size_t i, const ExternalPressure<Dim>
   const auto& vertex = grid_.vertices()[i];
   const double time = step.time;
   const PressureRow<Dim> row = pressure_row<Dim>(vertex, cells_, integrals_, open_);
-  const double storage = row.storage + row.steadied * unevenness(i);
+  const double lag = open_.any() && little_[i] != 0 ? little_lag * row.implicit[Grid::centre] : 0;
+  const double storage = row.storage + row.steadied * unevenness(i) + lag;
   const double gives = step.first || absorbing_.empty() ? 0 : give(vertex, step.kick);
   double diagonal = row.implicit[Grid::centre] + storage + gives;
   double right =
