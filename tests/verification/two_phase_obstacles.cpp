@@ -22,6 +22,7 @@ struct Basin {
   int dimension = 2;
   std::string formulation = "u-p";
   Scheme scheme = {};
+  std::string ponds = "";  ///< section water.ponds
 
   std::unique_ptr<Simulation> start() const {
     const bool flat = dimension == 2;
@@ -40,9 +41,9 @@ struct Basin {
         .physics = "two_phase"};
     if (fill == Fill::soil) scene.initial_stress = "{method: elastic_equilibrium}";
     scene.more = fmt::format(
-        "water: {{formulation: {}, bulk_modulus: 2.2 GPa, initial: {{method: hydrostatic, level: {} m}}}}\n"
+        "water: {{formulation: {}, bulk_modulus: 2.2 GPa, initial: {{method: hydrostatic, level: {} m}}{}}}\n"
         "obstacles: {{{}}}\n",
-        formulation, level, obstacles);
+        formulation, level, ponds.empty() ? "" : ", ponds: " + ponds, obstacles);
     return simulate(scene);
   }
 };
@@ -110,6 +111,22 @@ TEST(PressureAtObstacles, RestsWithSoil) {
       EXPECT_LT(off_hydrostatic(*simulation, basin.level), 1);
       EXPECT_LT(simulation->largest_speed(), 1e-6);
     }
+}
+
+// A pond stands on soil that leans against an overhanging wall: its weight presses, and where the soil meets the wall
+// it does not. As still as without the pond, but for the surface, where soil meets wall and pond.
+TEST(PressureAtObstacles, RestsUnderAPond) {
+  const Basin basin{.fill = Fill::soil,
+                    .body = "polygon: [[0.5 m, 0 m], [2 m, 0 m], [2 m, 1 m], [0.85 m, 1 m]]",
+                    .obstacles =
+                        "wall: {polygon: [[-1 m, -1 m], [0.15 m, -1 m], [1.2 m, 2 m], [-1 m, 2 m]], normal: fixed, "
+                        "tangential: fixed}",
+                    .level = 3,
+                    .ponds = "[{level: 3 m}]"};
+  const auto simulation = basin.start();
+  simulation->advance_to(0.1);
+  EXPECT_LT(off_hydrostatic(*simulation, basin.level), 1e-3 * unit_weight * basin.level);
+  EXPECT_LT(simulation->largest_speed(), 1e-5);
 }
 
 // Water has no stress that could hide an error of the forces. Particles of the surface, half of a cell deep, find
@@ -272,6 +289,20 @@ double acceleration_on_slope(Fill fill) {
 TEST(PressureAtObstacles, WaterAndSoilSlideDownASlope) {
   EXPECT_NEAR(acceleration_on_slope(Fill::soil) / (g * 0.5), 1, 0.01);
   EXPECT_NEAR(acceleration_on_slope(Fill::water) / (g * 0.5), 1, 0.1);
+}
+
+// A floor that moves along under soil that walls hold: friction is that of the effective stress, which is the weight
+// less that of the displaced water. Measured: 1.3 % more. Control: of the total stress it would be twice that.
+TEST(PressureAtObstacles, FrictionIsThatOfTheEffectiveStress) {
+  Basin basin = over_flat_floor();
+  basin.fill = Fill::soil;
+  basin.obstacles =
+      "floor: {box: {min: [-1 m, -1 m], max: [3 m, 0.5 m]}, normal: fixed, friction: 0.3, velocity: [[[0 s, 0 m/s], "
+      "[0.2 s, 1 m/s]], 0]}";
+  const auto simulation = basin.start();
+  simulation->advance_to(0.4);
+  const double submerged = (2000 - 1000) * g * 2 * 1.1;
+  EXPECT_NEAR(force(*simulation, "floor_force_x_N") / (-0.3 * submerged), 1, 0.03);
 }
 
 // ---- flow ----
