@@ -156,10 +156,10 @@ TEST(PressureAtObstacles, PressesWithTheWeightOfTheWater) {
 // Archimedes: the weight of the water that the box displaces, whatever lies above and below. Control: without (49a) the
 // force is 6044 N in the first step.
 TEST(PressureAtObstacles, LiftsWithTheWeightOfTheDisplacedWater) {
-  for (const char* const shape : {"quadratic_bspline", "linear", "cubic_bspline"})
+  for (const char* const shape : {"quadratic_bspline", "linear", "cubic_bspline", "ugimp", "cpdi", "cpdi2"})
     for (const double cell : {0.1, 0.05}) {
       Basin basin = around_box();
-      basin.scheme.shape = shape;
+      basin.scheme = {.shape = shape, .transfer = "tpic"};
       basin.cell = cell;
       const auto simulation = basin.start();
       simulation->advance_to(0.2);
