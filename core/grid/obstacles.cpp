@@ -120,26 +120,133 @@ const std::vector<typename Obstacles<Dim>::Contact>& Obstacles<Dim>::contacts(co
   return known.contacts;
 }
 
-/// Adds the nodes of the block that the obstacle with this number acts on.
-template <int Dim>
-void Obstacles<Dim>::find(const NodeBlock<Dim>& nodes, std::size_t number, std::vector<Contact>& contacts) const {
+namespace {
+
+/// Calls visit(number in the block, node) for the nodes of a block within [low, high) of the grid.
+template <int Dim, class Visit>
+void for_nodes(const NodeBlock<Dim>& nodes, const std::array<Index<Dim>, 2>& range, const Visit& visit) {
   constexpr int width = block_width<Dim>;
-  const Obstacle& obstacle = obstacles_[number];
-  const bool adheres = obstacle.definition.surface.adhesion > 0;
-  Vector<Dim> margin = support_;
-  if (!adheres) margin.fill(hair_);
-  if (!near(obstacle, nodes, margin)) return;
-  const auto [low, high] = range(nodes);
   for (int n = 0; n < block_nodes<Dim>; ++n) {
     Index<Dim> node;
     bool reached = true;
     for (int a = 0, rest = n; a < Dim; ++a, rest /= width) {
       node[a] = nodes.first_node[a] + rest % width;
-      reached = reached && node[a] >= low[a] && node[a] < high[a];
+      reached = reached && node[a] >= range[0][a] && node[a] < range[1][a];
     }
-    if (!reached) continue;
+    if (reached) visit(n, node);
+  }
+}
+
+}  // namespace
+
+/// How far a shape function goes towards a surface with this normal [m].
+template <int Dim>
+double Obstacles<Dim>::support_along(const Vector<Dim>& normal) const {
+  double support = 0;
+  for (int a = 0; a < Dim; ++a) support += std::abs(normal[a]) * support_[a];
+  return support;
+}
+
+/// Adds the nodes of the block that the obstacle with this number acts on.
+template <int Dim>
+void Obstacles<Dim>::find(const NodeBlock<Dim>& nodes, std::size_t number, std::vector<Contact>& contacts) const {
+  const Obstacle& obstacle = obstacles_[number];
+  const bool adheres = obstacle.definition.surface.adhesion > 0;
+  Vector<Dim> margin = support_;
+  if (!adheres) margin.fill(hair_);
+  if (!near(obstacle, nodes, margin)) return;
+  for_nodes<Dim>(nodes, range(nodes), [&](int n, const Index<Dim>& node) {
     Contact contact{n, static_cast<std::int32_t>(number), false, {}};
     if (acts(obstacle, place(node), &contact.inside, &contact.out)) contacts.push_back(contact);
+  });
+}
+
+// ---- around them ----
+
+/// -1: none reaches the node. `normal` is that of its surface.
+template <int Dim>
+int Obstacles<Dim>::nearest_within_support(const Index<Dim>& node, Vector<Dim>& normal) const {
+  int nearest = -1;
+  double least = 0;
+  for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+    const SignedDistance found = where(obstacles_[o], place(node));
+    Vector<Dim> out;
+    for (int a = 0; a < Dim; ++a) out[a] = found.normal[static_cast<std::size_t>(a)];
+    if (found.distance >= support_along(out) - hair_ || (nearest >= 0 && found.distance >= least)) continue;
+    normal = out;
+    nearest = static_cast<int>(o);
+    least = found.distance;
+  }
+  return nearest;
+}
+
+template <int Dim>
+void Obstacles<Dim>::note_faces(const Faces<Dim>& faces) {
+  grid_faces_.clear();
+  for (int axis = 0; axis < Dim; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const FaceCase& rule = faces.face(axis, side);
+      const bool held = rule.normal == FaceCase::Normal::fixed && rule.velocity.empty();
+      if (!rule.periodic) grid_faces_.push_back({axis, faces.wall_node(axis, side), held});
+    }
+}
+
+template <int Dim>
+typename Obstacles<Dim>::Near Obstacles<Dim>::near_of(const Index<Dim>& node) const {
+  Near near{};
+  near.obstacle = nearest_within_support(node, near.normal);
+  near.bound.fill(near.obstacle >= 0);
+  for (const GridFace& face : grid_faces_)
+    if (node[face.axis] == face.layer) {
+      const auto axis = static_cast<std::size_t>(face.axis);
+      near.held[axis] = face.held;
+      if (!face.held) near.bound[axis] = false;
+    }
+  return near;
+}
+
+template <int Dim>
+bool Obstacles<Dim>::surround(const Index<Dim>& node, int axis) const {
+  return any() && near_of(node).bound[static_cast<std::size_t>(axis)];
+}
+
+template <int Dim>
+const std::vector<typename Obstacles<Dim>::Near>& Obstacles<Dim>::surroundings(const NodeBlock<Dim>& nodes,
+                                                                               std::size_t block) {
+  Block& known = blocks_[block];
+  if (known.near_version == version_) return known.near;
+  known.near.clear();
+  known.near_version = version_;
+  if (std::any_of(obstacles_.begin(), obstacles_.end(),
+                  [&](const Obstacle& obstacle) { return near(obstacle, nodes, support_); }))
+    for_nodes<Dim>(nodes, range(nodes), [&](int n, const Index<Dim>& node) {
+      Near near = near_of(node);
+      near.node = n;
+      if (near.obstacle >= 0) known.near.push_back(near);
+    });
+  return known.near;
+}
+
+template <int Dim>
+void Obstacles<Dim>::press(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* slopes, const Lane* spread,
+                           Lane* force, bool again) {
+  surroundings(nodes, block);
+  for (Near& near : blocks_[block].near)
+    for (int a = 0; a < Dim; ++a) {
+      const bool bound = near.bound[static_cast<std::size_t>(a)];
+      const double now = bound ? spread[near.node][1 + a] - slopes[near.node][1 + a] : 0;
+      force[near.node][1 + a] += now - (again ? near.traction[a] : 0);
+      near.traction[a] = now;
+    }
+}
+
+template <int Dim>
+void Obstacles<Dim>::add_relief(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, double kick,
+                                Lane* relief) {
+  if (!any()) return;
+  for (const Near& near : surroundings(nodes, block)) {
+    const double mass = momentum[near.node][0];
+    for (int a = 0; a < Dim && mass > 0; ++a) relief[near.node][a] += kick / mass * near.traction[a];
   }
 }
 
@@ -147,13 +254,9 @@ void Obstacles<Dim>::find(const NodeBlock<Dim>& nodes, std::size_t number, std::
 template <int Dim>
 bool Obstacles<Dim>::acts(const Obstacle& obstacle, const Vector<Dim>& x, bool* inside, Vector<Dim>* out) const {
   const SignedDistance found = where(obstacle, x);
-  double support = 0;
-  for (int a = 0; a < Dim; ++a) {
-    (*out)[a] = -found.normal[static_cast<std::size_t>(a)];
-    support += std::abs((*out)[a]) * support_[a];
-  }
+  for (int a = 0; a < Dim; ++a) (*out)[a] = -found.normal[static_cast<std::size_t>(a)];
   *inside = found.distance <= hair_;
-  return *inside || (obstacle.definition.surface.adhesion > 0 && found.distance < support);
+  return *inside || (obstacle.definition.surface.adhesion > 0 && found.distance < support_along(*out));
 }
 
 template <int Dim>
@@ -207,6 +310,18 @@ void Obstacles<Dim>::fix_with_friction(const NodeBlock<Dim>& nodes, std::size_t 
   impose(nodes, block, momentum, motion, Moment::kicked, beside);
   for (std::size_t o = 0; o < obstacles_.size(); ++o)
     for (double& component : force[o]) component = kick > 0 ? component / kick : 0;
+  for (const Near& near : blocks_[block].near)
+    for (int a = 0; a < Dim; ++a)  // what presses on a face of the grid is the face's
+      if (!near.held[static_cast<std::size_t>(a)]) force[near.obstacle][a] -= near.traction[a];
+}
+
+template <int Dim>
+void Obstacles<Dim>::close(const NodeBlock<Dim>& nodes, std::size_t block, Lane* motion) {
+  if (!any()) return;
+  FaceCase closed;
+  closed.normal = FaceCase::Normal::fixed;
+  for (const Contact& contact : contacts(nodes, block))
+    if (contact.inside) impose_on_node<Dim>(closed, {.out = contact.out}, {motion + contact.node * motion_lanes<Dim>});
 }
 
 // ---- what others ask ----
@@ -237,6 +352,32 @@ const ObstacleCase* Obstacles<Dim>::at(const Vector<Dim>& x, SignedDistance* fou
     if (found->distance <= hair_) return &obstacle.definition;
   }
   return nullptr;
+}
+
+template <int Dim>
+SignedDistance Obstacles<Dim>::nearest(const Vector<Dim>& x, const ObstacleCase** whose) const {
+  SignedDistance nearest;
+  for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+    const SignedDistance here = where(obstacles_[o], x);
+    if (o > 0 && here.distance >= nearest.distance) continue;
+    nearest = here;
+    if (whose != nullptr) *whose = &obstacles_[o].definition;
+  }
+  return nearest;
+}
+
+template <int Dim>
+bool Obstacles<Dim>::reach(const Vector<Dim>& low, const Vector<Dim>& high) const {
+  return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const Obstacle& obstacle) {
+    for (int a = 0; a < Dim; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      const double travel = obstacle.travel[a];
+      if (period_[a] <= 0 &&
+          (high[a] < obstacle.bounds[0][axis] + travel || low[a] > obstacle.bounds[1][axis] + travel))
+        return false;
+    }
+    return true;
+  });
 }
 
 template <int Dim>

@@ -38,6 +38,32 @@ class Obstacles {
   void fix_with_friction(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, Lane* motion,
                          const Beside& beside, double kick);
 
+  /// A fluid in the pores does not pass the surfaces: its velocity relative to the material, in the motion of the nodes
+  /// in the obstacles, loses what is normal to them, at rest or moving.
+  void close(const NodeBlock<Dim>& nodes, std::size_t block, Lane* motion);
+
+  // ---- the pressure of a fluid on the surfaces, docs/theory.md, eq. (49a) ----
+
+  /// A node whose support a surface reaches, or that lies in an obstacle.
+  struct Near {
+    std::int32_t node, obstacle;  ///< the nearest one
+    std::array<bool, Dim> bound;  ///< by axis: whether the surface acts along it; not on a face of the grid that gives
+    std::array<bool, Dim> held;   ///< by axis: on a face of the grid that is fixed at rest
+    Vector<Dim> normal{};         ///< of the nearest surface, out of the obstacle
+    Vector<Dim> traction{};       ///< force of the fluid's pressure on the surface, taken back from the node [N]
+  };
+  /// On which faces of the grid nodes are: to be called before any surroundings are asked for.
+  void note_faces(const Faces<Dim>& faces);
+  /// Those of a block. Each block is to be asked for by one thread at a time.
+  const std::vector<Near>& surroundings(const NodeBlock<Dim>& nodes, std::size_t block);
+  Vector<Dim> velocity(int obstacle) const { return obstacles_[static_cast<std::size_t>(obstacle)].velocity.now; }
+  /// Adds to the forces of the nodes around the surfaces the traction -sum V grad(N q) of a pressure q, `slopes` being
+  /// {., sum V N grad q} and `spread` {0, -sum V q grad N}. With `again` it takes the place of the last one.
+  void press(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* slopes, const Lane* spread, Lane* force,
+             bool again);
+  /// Adds the velocities that these tractions give within `kick` to `relief`, which Beside has.
+  void add_relief(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, double kick, Lane* relief);
+
   /// Makes room for so many blocks of nodes; forgets what is known of those that are there.
   void resize(std::size_t node_blocks);
   /// What an obstacle does to a node that it holds, or, with adhesion, one that its surface is close to.
@@ -55,6 +81,15 @@ class Obstacles {
 
   /// Force of the material on the obstacles in the last step [N], by name and axis: NAME_force_x_N.
   std::vector<std::pair<std::string, double>> forces() const;
+
+  /// Changes whenever an obstacle has moved.
+  std::int64_t version() const { return version_; }
+  /// From the nearest surface, negative inside, and whose it is; of no use where there are no obstacles.
+  SignedDistance nearest(const Vector<Dim>& x, const ObstacleCase** whose = nullptr) const;
+  /// Whether the box around an obstacle reaches the box between two points.
+  bool reach(const Vector<Dim>& low, const Vector<Dim>& high) const;
+  /// Whether a node is one of the surroundings, and bound along an axis.
+  bool surround(const Index<Dim>& node, int axis) const;
 
   /// The obstacle that holds a point, and where the point lies to it; null: none. The first of several.
   const ObstacleCase* at(const Vector<Dim>& x, SignedDistance* where) const;
@@ -78,12 +113,17 @@ class Obstacles {
   struct Block {
     std::vector<Contact> contacts;
     std::int64_t version = -1;  ///< of the places of the obstacles
+    std::vector<Near> near;
+    std::int64_t near_version = -1;
   };
   void impose(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, Lane* motion, Moment moment,
               const Beside& beside);
   const std::vector<Contact>& contacts(const NodeBlock<Dim>& nodes, std::size_t block);
   void find(const NodeBlock<Dim>& nodes, std::size_t number, std::vector<Contact>& contacts) const;
   bool near(const Obstacle& obstacle, const NodeBlock<Dim>& nodes, const Vector<Dim>& margin) const;
+  double support_along(const Vector<Dim>& normal) const;
+  int nearest_within_support(const Index<Dim>& node, Vector<Dim>& normal) const;
+  Near near_of(const Index<Dim>& node) const;
   std::array<Index<Dim>, 2> range(const NodeBlock<Dim>& nodes) const;
   Vector<Dim> place(const Index<Dim>& node) const;
   SignedDistance where(const Obstacle& obstacle, Vector<Dim> x) const;
@@ -91,7 +131,12 @@ class Obstacles {
 
   std::vector<Obstacle> obstacles_;
   std::array<std::vector<double>, Dim> places_;
-  Vector<Dim> low_, period_;        ///< [m]
+  Vector<Dim> low_, period_;  ///< [m]
+  struct GridFace {
+    int axis, layer;
+    bool held;
+  };
+  std::vector<GridFace> grid_faces_;
   Vector<Dim> support_{};           ///< of a shape function along each axis [m]
   double hair_ = 0;                 ///< a node this close to the surface is in the obstacle [m]
   std::int64_t version_ = 0;        ///< of the places of the obstacles

@@ -62,6 +62,7 @@ Scene<Dim>::Scene(const Case& definition)
       obstacles(definition.obstacles, node_places<Dim>(*this), 0.5 * (shape->reach() + 1), grid.min, periods(grid)),
       particles(Dim) {
   for (std::size_t a = 0; a < Dim; ++a) gravity[a] = definition.gravity.empty() ? 0 : definition.gravity[a];
+  obstacles.note_faces(faces);
   std::vector<std::string> materials;
   for (const auto& [name, section] : definition.materials) materials.push_back(name);
   if (definition.contact) contact = std::make_unique<BodyContact<Dim>>(*definition.contact, materials);

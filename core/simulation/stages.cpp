@@ -192,18 +192,31 @@ void impose_boundaries(Scene<Dim>& scene, NodeFields<Dim>& nodes, std::size_t b,
     }
     return out.data();
   };
-  if (without_friction != nullptr) beside.relief = take(*without_friction, 1, relief);
+  if (without_friction != nullptr) {
+    beside.relief = take(*without_friction, 1, relief);
+    scene.obstacles.add_relief(block, b, momentum, kick, relief.data());
+  }
   if (scene.wants_area()) beside.area = take(scene.surface, -1, area);
   scene.dashpots.impose(block, nodes.motion(b), beside.area, kick, scene.step == 0);
   scene.obstacles.fix_with_friction(block, b, momentum, nodes.motion(b), beside, kick);
   scene.faces.fix_with_friction(block, nodes.motion(b), beside);
 }
 
+/// Adds the traction of a pressure on obstacles to the forces of a block.
+template <int Dim>
+void press_on_obstacles(Scene<Dim>& scene, NodeFields<Dim>* pressure, std::size_t b, bool again) {
+  if (pressure == nullptr) return;
+  pressure->collect_momentum(scene.blocks, b);
+  pressure->collect_force(scene.blocks, b);
+  scene.obstacles.press(scene.blocks.node_blocks()[b], b, pressure->momentum(b), pressure->force(b),
+                        scene.nodes.force(b), again);
+}
+
 }  // namespace
 
 template <int Dim>
 void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some,
-                   NodeFields<Dim>* without_friction) {
+                   NodeFields<Dim>* without_friction, NodeFields<Dim>* at_obstacles) {
   const auto timing = scene.clock.time(Stage::nodes);
   const double lightest = lightest_node(scene);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
@@ -211,6 +224,7 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
     for_fields(scene, b, [&](NodeFields<Dim>& nodes) {
       if (collect_momentum) nodes.collect_momentum(scene.blocks, b);
       if (collect_force) nodes.collect_force(scene.blocks, b);
+      press_on_obstacles(scene, at_obstacles, b, false);
       accelerate<Dim>(block, nodes.momentum(b), collect_force ? nodes.force(b) : nullptr, kick, scene.gravity, lightest,
                       nodes.motion(b));
     });
@@ -221,13 +235,15 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
 }
 
 template <int Dim>
-void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction, Items some) {
+void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction, Items some,
+                   NodeFields<Dim>* at_obstacles) {
   const auto timing = scene.clock.time(Stage::nodes);
   const double lightest = lightest_node(scene);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
     const Lane* const momentum = scene.nodes.momentum(b);
     scene.nodes.add_force(scene.blocks, b);
+    press_on_obstacles(scene, at_obstacles, b, true);
     accelerate<Dim>(block, momentum, scene.nodes.force(b), kick, scene.gravity, lightest, scene.nodes.motion(b));
     impose_boundaries(scene, scene.nodes, b, kick, lightest, without_friction);
   });
@@ -278,16 +294,16 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
   return update;
 }
 
-#define SLUICE_INSTANTIATE(Dim)                                                               \
-  template bool activate_blocks<Dim>(Scene<Dim>&);                                            \
-  template void scatter_block<Dim>(Scene<Dim>&, ScatterWhat, double, std::size_t);            \
-  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);                        \
-  template void divide_by_mass<Dim>(const NodeBlock<Dim>&, const Lane*, Lane*);               \
-  template void velocity_from_momentum<Dim>(Scene<Dim>&, Moment, Items);                      \
-  template void scatter_surface<Dim>(Scene<Dim>&, Items);                                     \
-  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items, NodeFields<Dim>*); \
-  template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*, Items);             \
-  template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&);                \
+#define SLUICE_INSTANTIATE(Dim)                                                                                 \
+  template bool activate_blocks<Dim>(Scene<Dim>&);                                                              \
+  template void scatter_block<Dim>(Scene<Dim>&, ScatterWhat, double, std::size_t);                              \
+  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);                                          \
+  template void divide_by_mass<Dim>(const NodeBlock<Dim>&, const Lane*, Lane*);                                 \
+  template void velocity_from_momentum<Dim>(Scene<Dim>&, Moment, Items);                                        \
+  template void scatter_surface<Dim>(Scene<Dim>&, Items);                                                       \
+  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items, NodeFields<Dim>*, NodeFields<Dim>*); \
+  template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*, Items, NodeFields<Dim>*);             \
+  template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&);                                  \
   template MotionUpdate<Dim> motion_update<Dim>(Scene<Dim>&, double, ColumnId, ColumnId);
 SLUICE_INSTANTIATE(2)
 SLUICE_INSTANTIATE(3)

@@ -49,15 +49,19 @@ void scatter_surface(Scene<Dim>& scene, Items some = everything);
 
 /// v_new = v + kick (f / m + g), with faces, obstacles and their friction, eq. (18). With `collect_force` the force
 /// tiles are summed; without, the momentum holds the impulse already. `without_friction`, or null, has in its force
-/// tiles a part of all forces, whose pressure on faces gives no friction.
+/// tiles a part of all forces, whose pressure on faces gives no friction. `at_obstacles`, or null, has a pressure q as
+/// Obstacles::press wants it, slopes in the momentum tiles: where the forces have -q in their stress, what it does to
+/// the nodes around obstacles becomes what its gradient does.
 template <int Dim>
 void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some = everything,
-                   NodeFields<Dim>* without_friction = nullptr);
+                   NodeFields<Dim>* without_friction = nullptr, NodeFields<Dim>* at_obstacles = nullptr);
 
 /// The same once more, from the momentum that the nodes have, with the force tiles added to the forces that they have:
-/// a correction, for example by a pressure that was not known before.
+/// a correction, for example by a pressure that was not known before. The pressure `at_obstacles` takes the place of
+/// the one before.
 template <int Dim>
-void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction, Items some = everything);
+void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction, Items some = everything,
+                   NodeFields<Dim>* at_obstacles = nullptr);
 
 /// Calls body(number of the block, block, workspace of the thread) for every block of particles, in parallel.
 template <int Dim, class Body>

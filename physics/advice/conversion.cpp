@@ -73,9 +73,8 @@ std::string trouble_with_undrained(const Case& definition, const SceneNumbers& s
 }
 
 std::string trouble_with_water(const Case& definition) {
-  if (!definition.obstacles.empty()) return "two_phase knows no obstacles";
   for (const auto& [name, face] : definition.faces)
-    if (face.absorbing) return "two_phase knows no absorbing faces";
+    if (face.absorbing) return "its faces absorb the waves of soil without pore water";
   if (definition.scheme.integration != "explicit") return "two_phase takes explicit steps";
   return "";
 }

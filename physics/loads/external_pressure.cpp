@@ -141,12 +141,13 @@ double ExternalPressure<Dim>::at(const Vector<Dim>& x, double t) const {
 }
 
 template <int Dim>
-void ExternalPressure<Dim>::load(const Index<Dim>& first_cell, double t, Lane* tile) const {
+void ExternalPressure<Dim>::load(const Index<Dim>& first_cell, double t, Lane* tile, Of which) const {
   constexpr int width = tile_width<Dim>(1);
   for (int n = 0; n < power(width, Dim); ++n) {
     Index<Dim> place;
     for (int a = 0, rest = n; a < Dim; ++a, rest /= width) place[a] = first_cell[a] - tile_margin + rest % width;
-    tile[n * motion_lanes<Dim>] = Lane{at(grid_.vertex(grid_.wrapped(place)), t), 0, 0, 0};
+    const Vector<Dim> x = grid_.vertex(grid_.wrapped(place));
+    tile[n * motion_lanes<Dim>] = Lane{which == Of::all ? at(x, t) : of_ponds(x, t), 0, 0, 0};
   }
 }
 

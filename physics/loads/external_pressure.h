@@ -63,9 +63,11 @@ class ExternalPressure {
   /// The whole pressure, and that of the ponds alone, which stands in the pores of the surface, too [Pa].
   double at(const Vector<Dim>& x, double t) const;
   double of_ponds(const Vector<Dim>& x, double t) const;
-  /// The whole pressure at the vertices of the cells around a block, as a tile of motion lanes for linear functions:
-  /// particles then find the pressure and its gradient between the vertices.
-  void load(const Index<Dim>& first_cell, double t, Lane* tile) const;
+  /// The pressure at the vertices of the cells around a block, as a tile of motion lanes for linear functions:
+  /// particles then find it and its gradient between the vertices.
+  enum class Of { all, ponds };
+  void load(const Index<Dim>& first_cell, double t, Lane* tile, Of which = Of::all) const;
+  bool any_ponds() const { return !ponds_.empty(); }
 
  private:
   std::vector<SurfaceLoad> loads_;

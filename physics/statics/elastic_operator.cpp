@@ -43,19 +43,23 @@ void add_stiffness(const Stencil<Dim>& s, const IsotropicElasticity& e, double v
   }
 }
 
-/// Columns: m N_a g; V p grad N_a + N_a b, with pressure and body force on the skeleton; m N_a.
+/// Columns: m N_a g; V p grad N_a + N_a b, with pressure and body force on the skeleton, and around obstacles with
+/// -V grad(N_a q) for the pressure q that stands at them; m N_a.
 template <int Dim>
 void add_nodal(const Scene<Dim>& scene, const SkeletonLoads<Dim>& loads, const Stencil<Dim>& s, std::size_t p,
                Eigen::MatrixXd& nodal) {
   const Columns& columns = scene.particles.columns;
   const double mass = columns.data(scene.particles.mass)[p];
-  const double push = loads.pressure == nullptr ? 0 : columns.data(scene.particles.volume)[p] * loads.pressure[p];
+  const double volume = columns.data(scene.particles.volume)[p];
+  const double push = loads.pressure == nullptr ? 0 : volume * loads.pressure[p];
   for (int i = 0; i < s.count; ++i)
     for (int d = 0; d < Dim; ++d) {
       const auto a = static_cast<std::size_t>(i);
       nodal(i * Dim + d, 0) += mass * s.value[a] * scene.gravity[d];
       nodal(i * Dim + d, 1) += push * s.gradient[a][d];
       if (loads.body_force[d] != nullptr) nodal(i * Dim + d, 1) += s.value[a] * loads.body_force[d][p];
+      if (loads.on_obstacles != nullptr && scene.obstacles.surround(s.node[a], d))
+        nodal(i * Dim + d, 1) -= volume * (s.value[a] * loads.slope[d][p] + s.gradient[a][d] * loads.on_obstacles[p]);
       nodal(i * Dim + d, 2) += mass * s.value[a];
     }
 }

@@ -231,15 +231,13 @@ Mobility<Dim> PoreWater<Dim>::mobility(const PoreSpace& space) const {
 }
 
 template <int Dim>
-double PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
-                               double kick, const std::array<const double*, Dim>& relative,
-                               PressureEquation<Dim>& equation) {
+void PoreWater<Dim>::take_prediction(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
+                                     Workspace<Dim>& work) {
   Columns& columns = scene.particles.columns;
   std::array<double*, Dim> change;
   for (int a = 0; a < Dim; ++a) change[a] = columns.data(acceleration_, a);
   scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
   scene.shape->gather_divergence(scene.view(block), work.motion_tile.data(), columns.data(divergence_), change);
-  return sum(scene, b, block, kick, relative, equation);
 }
 
 template <int Dim>
@@ -248,12 +246,12 @@ void PoreWater<Dim>::collect_at_rest(Scene<Dim>& scene, PressureEquation<Dim>& e
   std::ranges::fill(columns.values(divergence_), 0.0);
   for (int a = 0; a < Dim; ++a) std::ranges::fill(columns.values(acceleration_, a), 0.0);
   for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b)
-    if (equation.is_wet(b)) sum(scene, b, scene.blocks.particle_blocks()[b], 1, {}, equation);
+    if (equation.is_wet(b)) collect(scene, b, scene.blocks.particle_blocks()[b], 1, {}, equation);
 }
 
 template <int Dim>
-double PoreWater<Dim>::sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
-                           const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation) {
+double PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
+                               const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation) {
   std::fill_n(equation.cell_sums(b), cell_tile<Dim>, CellSums<Dim>{});
   std::fill_n(equation.vertex_tile(b), PressureGrid<Dim>::vertex_tile, Lane{});
   const Columns& columns = scene.particles.columns;

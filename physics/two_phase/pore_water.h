@@ -41,6 +41,7 @@ class PoreWater {
   ColumnId acceleration() const { return acceleration_; }
   ColumnId porosity() const { return porosity_; }
   ColumnId wet() const { return wet_; }
+  ColumnId zero() const { return zero_; }
   bool any_liquid() const;
 
   /// Which blocks hold water.
@@ -51,10 +52,12 @@ class PoreWater {
   void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
                       const ExternalPressure<Dim>& outside, ScatterWhat what);
 
-  /// Particles of a block to its cells and vertices: eq. (45). The nodes have the velocities of the predictor.
-  /// `relative` holds the velocities of the water relative to the solid, or nulls where it has no inertia of its own.
-  /// Returns the power that the flow through the pores dissipates [W].
-  double collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work, double kick,
+  /// Divergence and change of the predicted velocities of the nodes, for the particles of a block.
+  void take_prediction(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work);
+  /// Particles of a block to its cells and vertices: eq. (45), with the prediction that they have taken. `relative`
+  /// holds the velocities of the water relative to the solid, or nulls where it has no inertia of its own. Returns the
+  /// power that the flow through the pores dissipates [W].
+  double collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
                  const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
 
   /// The same for all blocks, with soil and water at rest.
@@ -96,8 +99,6 @@ class PoreWater {
   Mobility<Dim> mobility(const PoreSpace& space) const;
 
  private:
-  double sum(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
-             const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation);
   /// Forces of `stress`, a column, along all axes to a force tile.
   void scatter_isotropic(const Scene<Dim>& scene, const ParticleBlock<Dim>& block, const double* stress,
                          Lane* force_tile) const;

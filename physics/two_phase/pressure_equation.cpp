@@ -23,6 +23,14 @@ constexpr double least_share = 0.05;
 constexpr double least_continued_share = 0.25;
 /// Volume that may go astray in a cell in a step, as share of the cell.
 constexpr double volume_tolerance = 1e-9;
+/// With less room around it than this, as share of what it would have without obstacles, a vertex asks its neighbours
+/// whether it is wet: few particles are in so little room, or none. Half is the room of a vertex on a plane.
+constexpr double little_room = 0.25;
+constexpr double no_room = 1e-9;  // cells: round-off
+/// Such a vertex follows with a share of a step's delay: water that an obstacle has closed in has a pressure then.
+constexpr double little_lag = 0.1;
+/// A pressure that is less than this share of those around is none: particles bring zero back with some error.
+constexpr double no_pressure = 1e-3;
 constexpr std::size_t items_a_share = 256;
 
 /// Calls body(i) for i < count in parallel, in shares of many items.
@@ -96,6 +104,7 @@ void PressureEquation<Dim>::build(const std::vector<Index<Dim>>& wet_cells) {
   grid_.build(wet_cells, geometry_);
   const auto lattice = grid_.places();
   solver_.analyze(grid_.pattern(), nested_dissection<Dim>(lattice));
+  open_.forget();
   change_.assign(grid_.vertices().size(), 0);
 }
 
@@ -192,7 +201,8 @@ void PressureEquation<Dim>::classify(std::size_t v, double time) {
   fill_[v] = volume / ((in_run ? 1 : grid_.vertices()[v].share) * geometry_.cell_volume());
   kind_[v] = fill_[v] > 0.5 + 1e-6 ? Kind::inside : Kind::outside;
   old_[v] = volume > 0 ? lanes_[v][1] / volume : 0;
-  if (in_run || kind_[v] == Kind::outside) return;
+  if (beside_obstacle(v)) classify_beside_obstacle(v);
+  if (in_run || kind_[v] != Kind::inside) return;
   const auto& vertex = grid_.vertices()[v];
   for (int a = 0; a < Dim; ++a)
     for (int side = 0; side < 2; ++side) {
@@ -208,6 +218,56 @@ void PressureEquation<Dim>::classify(std::size_t v, double time) {
     }
 }
 
+/// What lies in an obstacle counts neither as water nor as missing water. A vertex with little room around it does not
+/// know whether it is wet, and has its neighbours say so.
+template <int Dim>
+void PressureEquation<Dim>::classify_beside_obstacle(std::size_t v) {
+  const auto& vertex = grid_.vertices()[v];
+  const double room = open_.around(vertex, geometry_);
+  if (room < no_room * geometry_.cell_volume()) {
+    kind_[v] = Kind::closed;
+    fill_[v] = 0;
+    return;
+  }
+  double water = vertex_sum(v)[0], all = room;
+  little_[v] = room < little_room * vertex.share * geometry_.cell_volume() ? 1 : 0;
+  if (little_[v] != 0)
+    for (const std::int32_t other : vertex.neighbour) {
+      if (other < 0) continue;
+      water += vertex_sum(static_cast<std::size_t>(other))[0];
+      all += open_.around(grid_.vertices()[static_cast<std::size_t>(other)], geometry_);
+    }
+  fill_[v] = water / all;
+  kind_[v] = fill_[v] > 0.5 + 1e-6 ? Kind::inside : Kind::outside;
+}
+
+/// The old pressure at a vertex that no particle reaches: straight on along the lines of the grid.
+template <int Dim>
+double PressureEquation<Dim>::continued_old(std::size_t v) const {
+  double sum = 0, weights = 0;
+  for (std::size_t n = 0; n < Grid::stencil; ++n) {
+    const std::int32_t next = n == Grid::centre ? -1 : grid_.vertices()[v].neighbour[n];
+    if (next < 0 || !(lanes_[static_cast<std::size_t>(next)][0] > 0)) continue;
+    const std::int32_t second = grid_.vertices()[static_cast<std::size_t>(next)].neighbour[n];
+    const bool straight = second >= 0 && lanes_[static_cast<std::size_t>(second)][0] > 0;
+    const double weight = straight ? 1 : 1e-9, here = old_[static_cast<std::size_t>(next)];
+    sum += weight * (straight ? 2 * here - old_[static_cast<std::size_t>(second)] : here);
+    weights += weight;
+  }
+  return weights > 0 ? sum / weights : 0;
+}
+
+/// Whether the material leaves a surface that does not hold it, with no pressure left between the two: it parts from
+/// the surface then, rather than be sucked back.
+template <int Dim>
+bool PressureEquation<Dim>::parts(std::size_t v) const {
+  if (open_.may_part()[v] == 0 || !(lanes_[v][3] > 0)) return false;
+  double around = 0;
+  for (const std::int32_t other : grid_.vertices()[v].neighbour)
+    if (other >= 0) around = std::max(around, std::abs(old_[static_cast<std::size_t>(other)]));
+  return old_[v] <= no_pressure * around;
+}
+
 /// All cells and vertices, those of like numbers by one thread: they lie together, and meet again in the rows.
 template <int Dim>
 void PressureEquation<Dim>::sum_up(double time) {
@@ -215,6 +275,18 @@ void PressureEquation<Dim>::sum_up(double time) {
   sums_.resize(cells);
   fill_.resize(vertices), kind_.resize(vertices), given_.resize(vertices);
   old_.resize(vertices), pressure_.resize(vertices), lanes_.resize(vertices);
+  // With obstacles the vertices have to know what room the cells have.
+  if (open_.any()) {
+    parallel_items(cells, [&](std::size_t c) { sums_[c] = cell_sum(c); });
+    open_.make_room(sums_, geometry_, integrals_);
+    little_.assign(vertices, 0);
+    parallel_items(vertices, [&](std::size_t v) { classify(v, time); });
+    for (std::size_t v = 0; v < vertices; ++v) {
+      if (kind_[v] == Kind::inside && !(lanes_[v][0] > 0)) old_[v] = continued_old(v);
+      if (kind_[v] == Kind::inside && parts(v)) kind_[v] = Kind::given, given_[v] = 0;
+    }
+    return;
+  }
   parallel_shares(std::max(cells, vertices), items_a_share, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t c = begin; c < std::min(end, cells); ++c) sums_[c] = cell_sum(c);
     for (std::size_t v = begin; v < std::min(end, vertices); ++v) classify(v, time);
@@ -227,6 +299,7 @@ void PressureEquation<Dim>::sum_up(double time) {
 /// surface's [1/m2].
 template <int Dim>
 double PressureEquation<Dim>::unevenness(std::size_t i) const {
+  if (beside_obstacle(i)) return 0;  // there the gradient pushes, eq. (49a)
   const auto& vertex = grid_.vertices()[i];
   double sum = 0;
   for (int a = 0, step = 1; a < Dim; ++a, step *= 3) {
@@ -267,6 +340,14 @@ typename PressureEquation<Dim>::Crossing PressureEquation<Dim>::crossing(std::si
   return {share, outside.of_ponds(x, time)};
 }
 
+template <int Dim>
+CellSums<Dim> PressureEquation<Dim>::sums_around(const typename Grid::Vertex& vertex) const {
+  CellSums<Dim> around;
+  for (const std::int32_t cell : vertex.cell)
+    if (cell >= 0) around.add(sums_[static_cast<std::size_t>(cell)]);
+  return around;
+}
+
 /// Water that leaves through faces with a prescribed flux at a vertex [m3/s]. Where the water has an inertia of its
 /// own, the share rho_w / rho of it moves with the mixture, whose nodes are free at such a face, and has been counted
 /// there.
@@ -280,10 +361,49 @@ double PressureEquation<Dim>::face_flux(const typename Grid::Vertex& vertex, dou
       flux += face->flux->at(time) * Grid::area_on_face(vertex, geometry_, a);
     }
   if (flux == 0 || water_.formulation != Formulation::v_w_p) return flux;
-  CellSums<Dim> around;
-  for (const std::int32_t cell : vertex.cell)
-    if (cell >= 0) around.add(sums_[static_cast<std::size_t>(cell)]);
+  const CellSums<Dim> around = sums_around(vertex);
   return around.volume > 0 ? flux * (1 - water_.density * around.inverse_density / around.volume) : flux;
+}
+
+template <int Dim>
+void PressureEquation<Dim>::find_absorbing_faces(const Scene<Dim>& scene) {
+  if (std::exchange(knows_absorbing_, true)) return;
+  constexpr int points = 8;
+  for (int axis = 0; axis < Dim; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const FaceCase& face = scene.faces.face(axis, side);
+      if (!face.absorbing) continue;
+      std::array<double, domain_capacity<Dim>> domain{};
+      scene.shape->fill_domain(geometry_, 0.5, domain);
+      const double h = geometry_.cell[axis];
+      double depth = 0;
+      for (int k = 0; k < points; ++k) {
+        Vector<Dim> x;
+        for (int a = 0; a < Dim; ++a) x[a] = 0.5 * (geometry_.min[a] + geometry_.max[a]);
+        const double from_face = (k + 0.5) / points * h;
+        x[axis] = side == 0 ? geometry_.min[axis] + from_face : geometry_.max[axis] - from_face;
+        const Stencil<Dim> s = scene.stencil(x, {domain.data(), static_cast<std::size_t>(scene.domain_components())});
+        for (int n = 0; n < s.count; ++n)
+          if (s.node[static_cast<std::size_t>(n)][axis] == scene.faces.wall_node(axis, side))
+            depth += s.value[static_cast<std::size_t>(n)] * h / points;
+      }
+      absorbing_.push_back({axis, side, face.absorbing->density * face.absorbing->p_wave, depth});
+    }
+}
+
+/// What a pressure on faces that let waves out makes them give way, times their area: eq. (49c) [m3/(s Pa)].
+template <int Dim>
+double PressureEquation<Dim>::give(const typename Grid::Vertex& vertex, double kick) const {
+  double sum = 0;
+  for (const AbsorbingFace& face : absorbing_) {
+    if (!on_face(vertex.place, face.axis, face.side)) continue;
+    const CellSums<Dim> around = sums_around(vertex);
+    if (!(around.volume > 0)) continue;
+    const double lightness = around.inverse_density / around.volume / face.depth;
+    sum += kick * lightness / (1 + 0.5 * kick * face.impedance * lightness) *
+           Grid::area_on_face(vertex, geometry_, face.axis);
+  }
+  return sum;
 }
 
 /// Eqs. (46) and (48). A line that leaves the water is continued to the vertex outside by the straight line through the
@@ -292,12 +412,16 @@ double PressureEquation<Dim>::face_flux(const typename Grid::Vertex& vertex, dou
 /// the one there. So what a vertex balances is what it moves, and a step never feeds a motion that the next step wants
 /// undone.
 template <int Dim>
-void PressureEquation<Dim>::write_row(std::size_t i, const ExternalPressure<Dim>& outside, double time) {
+void PressureEquation<Dim>::write_row(std::size_t i, const ExternalPressure<Dim>& outside, const PressureStep& step) {
   const auto& vertex = grid_.vertices()[i];
-  const PressureRow<Dim> row = pressure_row<Dim>(vertex, cells_, integrals_);
-  const double storage = row.storage + row.steadied * unevenness(i);
-  double diagonal = row.implicit[Grid::centre] + storage;
-  double right = row.push - face_flux(vertex, time) + (row.old[Grid::centre] + storage) * old_[i];
+  const double time = step.time;
+  const PressureRow<Dim> row = pressure_row<Dim>(vertex, cells_, integrals_, open_);
+  const double lag = open_.any() && little_[i] != 0 ? little_lag * row.implicit[Grid::centre] : 0;
+  const double storage = row.storage + row.steadied * unevenness(i) + lag;
+  const double gives = step.first || absorbing_.empty() ? 0 : give(vertex, step.kick);
+  double diagonal = row.implicit[Grid::centre] + storage + gives;
+  double right =
+      row.push - face_flux(vertex, time) + (row.old[Grid::centre] + storage + water_.increment * gives) * old_[i];
   double expansion = lanes_[i][2];
   bool at_surface = false;
   for (std::size_t n = 0; n < Grid::stencil; ++n) {
@@ -314,8 +438,9 @@ void PressureEquation<Dim>::write_row(std::size_t i, const ExternalPressure<Dim>
       right += row.old[n] * old_[j] - row.implicit[n] * given_[j];
       continue;
     }
+    if (kind_[j] == Kind::closed) continue;
     at_surface = true;
-    expansion += continuation(i, j, n) * lanes_[j][2];
+    if (continues(i)) expansion += continuation(i, j, n) * lanes_[j][2];
     const Crossing c = crossing(i, j, outside, time);
     // With unequal permeabilities some couplings are positive; continuing those would take from the diagonal.
     const double share = row.implicit[n] < 0 ? c.share : 1;
@@ -340,7 +465,7 @@ void PressureEquation<Dim>::assemble(const ExternalPressure<Dim>& outside, const
   values_.resize(grid_.pattern().row.size());
   right_side_.resize(count);
   parallel_shares(count, items_a_share, [&](std::size_t begin, std::size_t end, std::size_t) {
-    write_rows(begin, end, outside, step.time);
+    write_rows(begin, end, outside, step);
     guess(begin, end);
   });
 }
@@ -348,7 +473,7 @@ void PressureEquation<Dim>::assemble(const ExternalPressure<Dim>& outside, const
 /// Inner vertices of a run together, the others one by one.
 template <int Dim>
 void PressureEquation<Dim>::write_rows(std::size_t begin, std::size_t end, const ExternalPressure<Dim>& outside,
-                                       double time) {
+                                       const PressureStep& step) {
   const InnerRows<Dim> rows{cells_,      integrals_,    geometry_.cell, fill_.data(),
                             old_.data(), lanes_.data(), values_.data(), right_side_.data()};
   for (std::size_t i = begin; i < end;) {
@@ -358,7 +483,7 @@ void PressureEquation<Dim>::write_rows(std::size_t begin, std::size_t end, const
       continue;
     }
     if (kind_[i] == Kind::inside)
-      write_row(i, outside, time);
+      write_row(i, outside, step);
     else
       write_own_equation(i);
     ++i;
@@ -391,6 +516,7 @@ std::size_t PressureEquation<Dim>::inner_vertices(std::size_t i, std::size_t end
   std::size_t count = last - i;
   for (const std::int32_t neighbour : grid_.vertices()[i].neighbour)
     count = leading(kind_.data() + neighbour, count, Kind::inside);
+  if (open_.any()) count = leading(open_.beside().data() + i, count, char{0});
   return count;
 }
 
@@ -436,6 +562,8 @@ void PressureEquation<Dim>::solve(Scene<Dim>& scene, const ExternalPressure<Dim>
     const auto timing = scene.clock.time(Stage::pressure_assembly);
     if (!covered(scene)) rebuild(scene);
     if (grid_.empty()) return;
+    find_absorbing_faces(scene);
+    open_.find(scene.obstacles, grid_, geometry_);
     sum_up(step.time);
     set_cells(step);
     assemble(outside, step);
@@ -457,13 +585,20 @@ double line_weight(std::size_t n) {
 
 }  // namespace
 
+/// Whether a vertex continues its pressure to those outside. One with little room does not: it would have to move all
+/// that lies there.
+template <int Dim>
+bool PressureEquation<Dim>::continues(std::size_t i) const {
+  return kind_[i] == Kind::inside && (!open_.any() || little_[i] == 0);
+}
+
 /// Of all lines that reach a vertex outside from vertices inside.
 template <int Dim>
 double PressureEquation<Dim>::line_weights(std::size_t j) const {
   double weight = 0;
   for (std::size_t n = 0; n < Grid::stencil; ++n) {
     const std::int32_t i = grid_.vertices()[j].neighbour[n];
-    if (i >= 0 && kind_[static_cast<std::size_t>(i)] == Kind::inside) weight += line_weight<Dim>(n);
+    if (i >= 0 && continues(static_cast<std::size_t>(i))) weight += line_weight<Dim>(n);
   }
   return weight;
 }
@@ -486,7 +621,7 @@ void PressureEquation<Dim>::extrapolate(const ExternalPressure<Dim>& outside, do
     for (std::size_t n = 0; n < Grid::stencil && all_lines > 0; ++n) {
       if (vertex.neighbour[n] < 0) continue;
       const auto i = static_cast<std::size_t>(vertex.neighbour[n]);
-      if (kind_[i] != Kind::inside) continue;
+      if (!continues(i)) continue;
       const double share = continuation(i, j, n), weight = line_weight<Dim>(n) / all_lines;
       sum += share * pressure_[i] + (weight - share) * crossing(i, j, outside, time).pressure;
     }
@@ -498,8 +633,9 @@ template <int Dim>
 double PressureEquation<Dim>::solve_steady(Scene<Dim>& scene, const ExternalPressure<Dim>& outside) {
   if (!covered(scene)) rebuild(scene);
   if (grid_.empty()) return 0;
+  open_.find(scene.obstacles, grid_, geometry_);
   sum_up(scene.time);
-  SteadySeepage found = solve_steady_seepage(grid_, sums_, geometry_, water_, outside, unit_weight_, scene.time);
+  SteadySeepage found = solve_steady_seepage(grid_, sums_, open_, geometry_, water_, outside, unit_weight_, scene.time);
   pressure_ = std::move(found.pressure);
   return found.discharge;
 }

@@ -18,6 +18,7 @@
 #include "physics/two_phase/cell_coefficients.h"
 #include "physics/two_phase/cell_sums.h"
 #include "physics/two_phase/corner_integrals.h"
+#include "physics/two_phase/open_cells.h"
 #include "physics/two_phase/pressure_grid.h"
 #include "physics/two_phase/pressure_rows.h"
 #include "physics/two_phase/water.h"
@@ -31,6 +32,7 @@ struct PressureStep {
   double kick;  ///< time over which the pressure accelerates [s]
   double time;  ///< at the end of the step [s]
   bool stabilised;
+  bool first;  ///< of the run: faces that absorb hold still
 };
 
 template <int Dim>
@@ -44,7 +46,7 @@ class PressureEquation {
   bool is_wet(std::size_t block) const { return wet_[block] != 0; }
 
   CellSums<Dim>* cell_sums(std::size_t block) { return cell_sums_.data() + block * cell_tile<Dim>; }
-  /// Lanes {V, V p, V div v, …} of linear shape functions.
+  /// Lanes {V, V p, V div v, V (v away from an obstacle)} of linear shape functions.
   Lane* vertex_tile(std::size_t block) { return vertex_tiles_.data() + block * PressureGrid<Dim>::vertex_tile; }
 
   /// Throws CaseError if nothing holds the pressure of a closed region of incompressible water.
@@ -66,7 +68,14 @@ class PressureEquation {
 
  private:
   using Grid = PressureGrid<Dim>;
-  enum class Kind : char { outside, inside, given };
+  enum class Kind : char { outside, inside, given, closed };  ///< closed: within an obstacle, no water is near
+
+  /// A face that lets waves out: the share of the pressure that it gives way to.
+  struct AbsorbingFace {
+    int axis, side;
+    double impedance;  ///< rho c of what lies beyond [kg/(m2 s)]
+    double depth;      ///< of the material that moves with the nodes of the face [m]
+  };
 
   /// A line from a vertex inside to one outside, and where it crosses the surface.
   struct Crossing {
@@ -82,18 +91,26 @@ class PressureEquation {
   void set_cells(const PressureStep& step);
   StepCoefficients<Dim> coefficients(const PressureStep& step) const;
   void classify(std::size_t v, double time);
+  void classify_beside_obstacle(std::size_t v);
+  double continued_old(std::size_t v) const;
+  bool parts(std::size_t v) const;
+  bool beside_obstacle(std::size_t v) const { return open_.any() && open_.beside()[v] != 0; }
+  void find_absorbing_faces(const Scene<Dim>& scene);
+  CellSums<Dim> sums_around(const typename Grid::Vertex& vertex) const;
+  double give(const typename Grid::Vertex& vertex, double kick) const;
   void sum_up(double time);
   bool on_face(const Index<Dim>& place, int axis, int side) const;
   void assemble(const ExternalPressure<Dim>& outside, const PressureStep& step);
-  void write_rows(std::size_t begin, std::size_t end, const ExternalPressure<Dim>& outside, double time);
+  void write_rows(std::size_t begin, std::size_t end, const ExternalPressure<Dim>& outside, const PressureStep& step);
   void guess(std::size_t begin, std::size_t end);
   void write_own_equation(std::size_t i);
   std::size_t inner_vertices(std::size_t i, std::size_t end) const;
   double unevenness(std::size_t i) const;
-  void write_row(std::size_t i, const ExternalPressure<Dim>& outside, double time);
+  void write_row(std::size_t i, const ExternalPressure<Dim>& outside, const PressureStep& step);
   double surface_share(std::size_t inside, std::size_t neighbour) const;
   Crossing crossing(std::size_t inside, std::size_t neighbour, const ExternalPressure<Dim>& outside, double time) const;
   double face_flux(const typename Grid::Vertex& vertex, double time) const;
+  bool continues(std::size_t i) const;
   double line_weights(std::size_t j) const;
   double continuation(std::size_t i, std::size_t j, std::size_t n) const;
   void extrapolate(const ExternalPressure<Dim>& outside, double time);
@@ -106,7 +123,11 @@ class PressureEquation {
   CornerIntegrals<Dim> integrals_;
   std::array<const WaterFace*, 2 * Dim> faces_{};  ///< null: impermeable
 
+  std::vector<AbsorbingFace> absorbing_;
+  bool knows_absorbing_ = false;
+
   PressureGrid<Dim> grid_;
+  OpenCells<Dim> open_;
   std::vector<Index<Dim>> built_from_;  // the wet cells of that time
   LaggedCholesky solver_;
   std::vector<char> wet_;  // by block
@@ -118,6 +139,7 @@ class PressureEquation {
   std::vector<Lane> lanes_;             // by vertex
   std::vector<double> fill_;            // by vertex: share of its surroundings that is wet
   std::vector<Kind> kind_;              // by vertex
+  std::vector<char> little_;            // by vertex: an obstacle leaves little room; empty without obstacles
   std::vector<double> given_;           // by vertex [Pa]
   std::vector<double> old_, pressure_;  // by vertex [Pa]
   std::vector<double> change_;          // of the pressure in the last step, by vertex [Pa]

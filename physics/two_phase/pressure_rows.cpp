@@ -139,24 +139,30 @@ SLUICE_MULTITARGET void write_chunk(const typename PressureGrid<Dim>::Vertex& ve
 
 template <int Dim>
 PressureRow<Dim> pressure_row(const typename PressureGrid<Dim>::Vertex& vertex, const CellCoefficients<Dim>& cells,
-                              const CornerIntegrals<Dim>& integrals) {
+                              const CornerIntegrals<Dim>& integrals, const OpenCells<Dim>& open) {
   using namespace pressure_rows;
+  constexpr std::size_t corners = PressureGrid<Dim>::corners;
   PressureRow<Dim> row;
-  for (std::size_t k = 0; k < PressureGrid<Dim>::corners; ++k) {
+  for (std::size_t k = 0; k < corners; ++k) {
     if (vertex.cell[k] < 0) continue;
     const auto cell = static_cast<std::size_t>(vertex.cell[k]);
+    const OpenCell<Dim>* const part = open.of(cell);
+    const std::size_t m = corners - 1 - k;
     for (std::size_t n = 0; n < PressureGrid<Dim>::stencil; ++n) {
       const int c = couplings_of_cells<Dim>[n][k];
       if (c < 0) continue;
+      const auto apart = static_cast<std::size_t>(c);
       for (std::size_t a = 0; a < Dim; ++a) {
-        row.implicit[n] += integrals.laplacian[a][static_cast<std::size_t>(c)] * cells.implicit[a][cell];
-        row.old[n] += integrals.laplacian[a][static_cast<std::size_t>(c)] * cells.old[a][cell];
+        const double product = part == nullptr ? integrals.laplacian[a][apart] : part->products[a][m][m ^ apart];
+        row.implicit[n] += product * cells.implicit[a][cell];
+        row.old[n] += product * cells.old[a][cell];
       }
     }
-    row.storage += cells.storage[cell];
-    row.steadied += cells.steadied[cell];
+    const double share = part == nullptr ? 1 : part->weight[m] / open.whole_weight();
+    row.storage += share * cells.storage[cell];
+    row.steadied += share * cells.steadied[cell];
     for (std::size_t a = 0; a < Dim; ++a)
-      row.push += integrals.slope[a][PressureGrid<Dim>::corners - 1 - k] * cells.push[a][cell];
+      row.push += (part == nullptr ? integrals.slope[a][m] : part->slope[a][m]) * cells.push[a][cell];
   }
   return row;
 }
@@ -171,7 +177,7 @@ void write_inner_rows(const typename PressureGrid<Dim>::Vertex& vertex, std::siz
 
 #define SLUICE_INSTANTIATE(Dim)                                                                               \
   template PressureRow<Dim> pressure_row<Dim>(const PressureGrid<Dim>::Vertex&, const CellCoefficients<Dim>&, \
-                                              const CornerIntegrals<Dim>&);                                   \
+                                              const CornerIntegrals<Dim>&, const OpenCells<Dim>&);            \
   template void write_inner_rows<Dim>(const PressureGrid<Dim>::Vertex&, std::size_t, std::size_t, const InnerRows<Dim>&)
 SLUICE_INSTANTIATE(2);
 SLUICE_INSTANTIATE(3);

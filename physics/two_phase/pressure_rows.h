@@ -7,6 +7,7 @@
 #include "core/grid/lane.h"
 #include "physics/two_phase/cell_coefficients.h"
 #include "physics/two_phase/corner_integrals.h"
+#include "physics/two_phase/open_cells.h"
 #include "physics/two_phase/pressure_grid.h"
 
 namespace sluice {
@@ -20,7 +21,7 @@ struct PressureRow {
 
 template <int Dim>
 PressureRow<Dim> pressure_row(const typename PressureGrid<Dim>::Vertex& vertex, const CellCoefficients<Dim>& cells,
-                              const CornerIntegrals<Dim>& integrals);
+                              const CornerIntegrals<Dim>& integrals, const OpenCells<Dim>& open);
 
 /// What the rows of inner vertices are made of, and where they go.
 template <int Dim>
@@ -34,7 +35,7 @@ struct InnerRows {
 };
 
 /// Rows of `count` vertices from number `first` on, which is `vertex`, of one run (PressureGrid::run_end), all with
-/// nothing but vertices inside around them: no surface and no face is near.
+/// nothing but vertices inside around them: no surface, no face and no obstacle is near.
 template <int Dim>
 void write_inner_rows(const typename PressureGrid<Dim>::Vertex& vertex, std::size_t first, std::size_t count,
                       const InnerRows<Dim>& rows);

@@ -10,7 +10,7 @@ namespace sluice {
 
 namespace {
 
-/// A face is closed to the relative motion where it holds the solid and lets no water through.
+/// A face is closed to the relative motion where it holds the solid, or absorbs, and lets no water through.
 std::map<std::string, FaceCase> closed_faces(const Case& definition, const WaterCase& water) {
   std::map<std::string, FaceCase> faces;
   for (const auto& [name, face] : definition.faces) {
@@ -18,7 +18,7 @@ std::map<std::string, FaceCase> closed_faces(const Case& definition, const Water
     const auto found = water.faces.find(name);
     const bool open =
         found != water.faces.end() && (found->second.pressure || found->second.head || found->second.flux);
-    if (!open && face.normal != FaceCase::Normal::free) closed.normal = FaceCase::Normal::fixed;
+    if (!open && (face.normal != FaceCase::Normal::free || face.absorbing)) closed.normal = FaceCase::Normal::fixed;
     faces[name] = closed;
   }
   return faces;
@@ -241,7 +241,9 @@ void RelativeMotion<Dim>::advance_nodes(Scene<Dim>& scene, std::size_t b, double
       relative.change[a] = after - before[1 + a];
     }
   }
-  faces_->fix(scene.blocks.node_blocks()[b], nodes_.motion(b));
+  const NodeBlock<Dim>& block = scene.blocks.node_blocks()[b];
+  scene.obstacles.close(block, b, nodes_.motion(b));
+  faces_->fix(block, nodes_.motion(b));
   for (std::size_t n = 0; n < block_nodes<Dim>; ++n) {
     const double share = before_[b * block_nodes<Dim> + n][0];
     const Motion<Dim> solid(scene.nodes.motion(b) + n * motion_lanes<Dim>);
@@ -251,7 +253,8 @@ void RelativeMotion<Dim>::advance_nodes(Scene<Dim>& scene, std::size_t b, double
       solid.change[a] -= share * relative.change[a];
     }
   }
-  scene.faces.fix(scene.blocks.node_blocks()[b], scene.nodes.motion(b));
+  scene.obstacles.fix(block, b, scene.nodes.momentum(b), scene.nodes.motion(b), Moment::now);
+  scene.faces.fix(block, scene.nodes.motion(b));
 }
 
 template <int Dim>

@@ -27,6 +27,7 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
       loads_(read_surface_loads(definition)),
       stress_(without_pores(definition)),
       pores_(water_, read_pore_spaces(definition, water_, liquids(stress_.materials())), stress_.materials()),
+      at_obstacles_(definition, pores_),
       relative_(definition, water_, pores_),
       outside_(loads_, water_.ponds, -water_.density * definition.gravity.back(), grid_of<Dim>(definition.grid)),
       pressure_(water_, grid_of<Dim>(definition.grid), definition.gravity.back()) {
@@ -37,20 +38,14 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
         fmt::format("scheme.integration: {} is for `physics: total_stress`; two_phase takes explicit steps of "
                     "the soil, with the pressure of the water implicit",
                     definition.scheme.integration));
-  for (const auto& [name, face] : definition.faces)
-    if (face.absorbing)
-      throw CaseError(definition.source.find("boundaries")->find(name)->place,
-                      fmt::format("boundaries.{}: absorbing: the physics two_phase does not know it, for the waves of "
-                                  "soil with water are others; take `physics: total_stress`",
-                                  name));
+  if (!definition.obstacles.empty() && water_.formulation == Formulation::explicit_)
+    throw CaseError(definition.obstacles.front().place,
+                    "obstacles: `formulation: explicit` does not know them, for its particles have no gradient of the "
+                    "pressure that could stand at their surfaces; take `formulation: u-p` or `v-w-p`");
   if (definition.contact)
     throw CaseError(definition.contact->place,
                     "contact: the physics two_phase does not know it, for water would have to pass from body to body; "
                     "take `physics: total_stress`");
-  if (!definition.obstacles.empty())
-    throw CaseError(definition.obstacles.front().place,
-                    "obstacles: the physics two_phase does not know them, for it cannot hold water back at their "
-                    "surfaces; take `physics: total_stress`");
 }
 
 /// Points that change keep their grains and their water: porosity follows from the density of the grains.
@@ -77,6 +72,7 @@ void TwoPhase<Dim>::check_changes(const Case& definition) const {
 template <int Dim>
 void TwoPhase<Dim>::declare(Particles& particles) {
   pores_.declare(particles, outside_.any());
+  at_obstacles_.declare(particles);
   relative_.declare(particles, particles.columns.contains("affine_velocity"));
   stress_.declare(particles.columns, pores_.inertia());
 }
@@ -94,7 +90,9 @@ void TwoPhase<Dim>::initialise(Scene<Dim>& scene) {
   pores_.set_initial_pressure(scene);
   if (water_.initial.method == InitialPressure::Method::steady_seepage) start_seepage(scene);
   activate_blocks(scene);
-  apply_initial_stress(initial_stress_, scene, stress_, pores_.skeleton_loads(scene, outside_, stress_.workspaces()));
+  SkeletonLoads<Dim> loads = pores_.skeleton_loads(scene, outside_, stress_.workspaces());
+  at_obstacles_.add_at_rest(scene, outside_, stress_.workspaces(), loads);
+  apply_initial_stress(initial_stress_, scene, stress_, loads);
   stress_.initialise(scene);
 }
 
@@ -121,6 +119,7 @@ void TwoPhase<Dim>::step(Scene<Dim>& scene, double dt) {
   placed_ = true;
   stress_.begin_step(scene);
   if (relative_.active()) relative_.begin_step(scene);
+  at_obstacles_.begin_step(scene);
   begin_sums(scene);
   if (water_.formulation == Formulation::explicit_)
     step_explicit(scene, dt);
@@ -138,7 +137,7 @@ void TwoPhase<Dim>::step_projected(Scene<Dim>& scene, double dt) {
   collect(to_grid, scene, kick);
   to_grid.run();
 
-  pressure_.solve(scene, outside_, {dt, kick, scene.time + dt, water_.stabilisation});
+  pressure_.solve(scene, outside_, {dt, kick, scene.time + dt, water_.stabilisation, scene.step == 0});
 
   Sweep<Dim> to_particles(scene.blocks);
   correct(to_particles, scene, kick);
@@ -163,6 +162,7 @@ void TwoPhase<Dim>::predict(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
   const bool stress_first = stress_.timing() == StressTiming::usf;
   const auto forces = [this, &scene](std::size_t b, const auto& block, Workspace<Dim>& work, ScatterWhat what) {
     pores_.scatter_forces(scene, b, block, work.motion_tile.data(), outside_, what);
+    at_obstacles_.scatter(scene, b, block, work, water_.increment, outside_);
     pores_.pressed().start_work(scene, b, block);
   };
   sweep.over_particles([this, &scene, forces, stress_first](Items some) {
@@ -188,8 +188,9 @@ void TwoPhase<Dim>::predict(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
     });
   }
   sweep.over_nodes([this, &scene, kick, stress_first](Items some) {
-    advance_nodes(scene, kick, !stress_first, true, some);
+    advance_nodes<Dim>(scene, kick, !stress_first, true, some, nullptr, at_obstacles_.nodes());
     if (relative_.active()) relative_.collect(scene, some);
+    if (at_obstacles_.active()) at_obstacles_.part(scene, some);
   });
 }
 
@@ -200,7 +201,11 @@ void TwoPhase<Dim>::collect(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
     const auto timing = scene.clock.time(Stage::pressure_assembly);
     const auto relative = relative_.velocity(scene.particles);
     const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
-      if (pressure_.is_wet(b)) dissipation_[b] = pores_.collect(scene, b, block, work, kick, relative, pressure_);
+      if (!pressure_.is_wet(b)) return;
+      pores_.take_prediction(scene, b, block, work);
+      at_obstacles_.take_divergence(scene, b, block, work);
+      dissipation_[b] = pores_.collect(scene, b, block, kick, relative, pressure_);
+      at_obstacles_.add_flow(scene, b, block, pressure_.vertex_tile(b));
     };
     for_each_block(scene, stress_.workspaces(), body, some);
   });
@@ -209,18 +214,20 @@ void TwoPhase<Dim>::collect(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
 /// The nodes take up the new pressure, eq. (49).
 template <int Dim>
 void TwoPhase<Dim>::correct(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
-  const bool friction = scene.faces.any_friction();
+  const bool friction = scene.any_friction();
   if (friction) wall_.resize(scene.blocks, scene.shape->reach());
   sweep.over_particles([this, &scene, friction](Items some) {
     const auto timing = scene.clock.time(Stage::scatter);
     const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
       pores_.correct(scene, b, block, work, pressure_);
+      at_obstacles_.scatter(scene, b, block, work, 1, outside_);
       if (friction) pores_.scatter_pressure(scene, b, block, outside_, wall_);
     };
     for_each_block(scene, stress_.workspaces(), body, some);
   });
-  sweep.over_nodes(
-      [this, &scene, kick, friction](Items some) { correct_nodes(scene, kick, friction ? &wall_ : nullptr, some); });
+  sweep.over_nodes([this, &scene, kick, friction](Items some) {
+    correct_nodes(scene, kick, friction ? &wall_ : nullptr, some, at_obstacles_.nodes());
+  });
   if (relative_.active()) relative_.advance(sweep, scene, stress_.workspaces(), kick);
 }
 

@@ -10,6 +10,7 @@
 #include "physics/initial_stress/initial_stress.h"
 #include "physics/loads/external_pressure.h"
 #include "physics/materials/stress_update.h"
+#include "physics/two_phase/obstacle_water.h"
 #include "physics/two_phase/pore_water.h"
 #include "physics/two_phase/pressure_equation.h"
 #include "physics/two_phase/relative_motion.h"
@@ -55,6 +56,7 @@ class TwoPhase final : public PhysicsModule<Dim> {
   std::vector<SurfaceLoad> loads_;
   StressUpdate<Dim> stress_;
   PoreWater<Dim> pores_;
+  ObstacleWater<Dim> at_obstacles_;
   RelativeMotion<Dim> relative_;
   ExternalPressure<Dim> outside_;
   PressureEquation<Dim> pressure_;
