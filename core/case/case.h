@@ -89,7 +89,7 @@ struct SchemeCase {
   std::string integration = "explicit";  ///< explicit, implicit_static or implicit_newmark
   double tolerance = 1e-6;               ///< implicit steps: of forces out of balance, over the largest force on a node
   double gravity_ramp = 0;               ///< implicit_static: time over which gravity grows [s]
-  double ghost_penalty = 0.01;           ///< implicit steps: of nodes hardly reached, in units of 2 G
+  double ghost_penalty = 1e-3;           ///< implicit steps: of nodes hardly reached, in units of 2 G
   std::string strain = "jaumann";        ///< how stress follows large strain: jaumann or hencky
   bool f_bar = false;                    ///< volumetric strain increments averaged over cells
   std::optional<double> fixed_time_step;  ///< [s]; absent: computed every step

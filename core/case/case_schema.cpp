@@ -506,35 +506,27 @@ Schema<Case> make_case_schema() {
                            "intersection of several. They move with their velocity.",
                .nested = obstacle_schema().docs()},
               read_obstacles, write_obstacles)
-      .custom(
-          {.name = "initial_stress",
-           .type = field_type::section,
-           .default_text = "no stress",
-           .sentence = "Stress in the ground before anything moves; read by the physics module."},
-          [](Case& definition, const Node& node, Problems&) { definition.initial_stress = node; },
-          [](const Case& definition) { return definition.initial_stress; })
-      .custom(
-          {.name = "surface_loads",
-           .type = field_type::sections,
-           .default_text = "none",
-           .sentence = "Pressures on the surface of the material; read by the physics module."},
-          [](Case& definition, const Node& node, Problems&) { definition.surface_loads = node; },
-          [](const Case& definition) { return definition.surface_loads; })
-      .custom(
-          {.name = "water",
-           .type = field_type::section,
-           .default_text = "none",
-           .sentence = "Water in the pores and beside the soil; read by the physics module `two_phase`."},
-          [](Case& definition, const Node& node, Problems&) { definition.water = node; },
-          [](const Case& definition) { return definition.water; })
-      .custom(
-          {.name = "advice",
-           .type = field_type::section,
-           .default_text = "guessed from the case",
-           .sentence =
-               "What `sluice check` and `physics: auto` judge the case by; read by advisors, see `auto` below."},
-          [](Case& definition, const Node& node, Problems&) { definition.advice = node; },
-          [](const Case& definition) { return definition.advice; })
+      .kept({.name = "initial_stress",
+             .type = field_type::section,
+             .default_text = "no stress",
+             .sentence = "Stress in the ground before anything moves; read by the physics module."},
+            &Case::initial_stress)
+      .kept({.name = "surface_loads",
+             .type = field_type::sections,
+             .default_text = "none",
+             .sentence = "Pressures on the surface of the material; read by the physics module."},
+            &Case::surface_loads)
+      .kept({.name = "water",
+             .type = field_type::section,
+             .default_text = "none",
+             .sentence = "Water in the pores and beside the soil; read by the physics module `two_phase`."},
+            &Case::water)
+      .kept({.name = "advice",
+             .type = field_type::section,
+             .default_text = "guessed from the case",
+             .sentence =
+                 "What `sluice check` and `physics: auto` judge the case by; read by advisors, see `auto` below."},
+            &Case::advice)
       .sections("changes", &Case::changes, change_schema(), "Materials that give way to others during the run.", false)
       .section("contact", &Case::contact, contact_schema(),
                "Bodies that do not stick to each other where they touch; for the physics `total_stress`.",

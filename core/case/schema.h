@@ -348,6 +348,13 @@ class Schema : public AnySchema {
     return with(std::move(field));
   }
 
+  /// A node of the file as it stands, which something else reads later.
+  Schema& kept(FieldDoc doc, Node T::*member) {
+    return custom(
+        std::move(doc), [=](T& object, const Node& node, Problems&) { object.*member = node; },
+        [=](const T& object) { return object.*member; });
+  }
+
   /// Whatever the kinds above do not cover. `reader` adds what is wrong to the problems; `writer` returns an absent
   /// node where there is nothing to write.
   Schema& custom(FieldDoc doc, std::function<void(T&, const Node&, Problems&)> reader,

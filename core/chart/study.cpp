@@ -216,12 +216,11 @@ Schema<Study> make_schema() {
             study.reference = settings_of(node, "reference", problems);
           },
           [](const Study&) { return Node{}; })
-      .custom(
-          {.name = "error",
-           .type = field_type::section,
-           .sentence = "The error: `measure` and its keys, listed under *error measures*.",
-           .required = true},
-          [](Study& study, const Node& node, Problems&) { study.error = node; }, [](const Study&) { return Node{}; })
+      .kept({.name = "error",
+             .type = field_type::section,
+             .sentence = "The error: `measure` and its keys, listed under *error measures*.",
+             .required = true},
+            &Study::error)
       .integer("repetitions", &Study::repetitions, from_to(1, 99),
                "Runs of each variant, in turns with the others; the cost is their median.", 3)
       .quantity("repeat_up_to", &Study::repeat_up_to, unit::time, at_least(0),

@@ -48,13 +48,11 @@ const Schema<AdviceCase>& schema() {
                     "For the same: density of the water, which is part of that of the material.", 1000.0)
           .quantity("water_bulk_modulus", &A::water_bulk_modulus, unit::stress, above(0),
                     "Bulk modulus of the water where the case gives none.", 2.2e9)
-          .custom(
-              {.name = "verdict",
-               .type = "map",
-               .default_text = "none",
-               .sentence = "Written by `physics: auto` into the resolved case: what it took, and why."},
-              [](A& advice, const Node& node, Problems&) { advice.verdict = node; },
-              [](const A& advice) { return advice.verdict; });
+          .kept({.name = "verdict",
+                 .type = "map",
+                 .default_text = "none",
+                 .sentence = "Written by `physics: auto` into the resolved case: what it took, and why."},
+                &A::verdict);
   return declared;
 }
 

@@ -51,14 +51,6 @@ void optional_integer(Schema<T>& schema, const std::string& key, std::optional<i
       [=](const T& object) { return object.*member ? Node::text(std::to_string(*(object.*member))) : Node{}; });
 }
 
-/// A section that is read later, by what stands beside it.
-template <class T>
-void kept(Schema<T>& schema, FieldDoc doc, Node T::*member) {
-  schema.custom(
-      std::move(doc), [=](T& object, const Node& node, Problems&) { object.*member = node; },
-      [=](const T& object) { return object.*member; });
-}
-
 std::vector<std::string> type_words() {
   std::vector<std::string> words;
   for (const PathType& type : path_types()) words.push_back(type.name);
@@ -97,20 +89,18 @@ const Schema<StageKeys>& stage_schema() {
   static const Schema<StageKeys> schema = [] {
     using S = StageKeys;
     auto declared = Schema<S>("stage").quantity("duration", &S::duration, unit::time, above(0), "Its length.");
-    kept(declared,
-         {.name = "strain_rate",
-          .type = field_type::section,
-          .unit = "1/s",
-          .default_text = "0 in all components that `stress` leaves",
-          .sentence = "Strain rates by component, for example {zz: -0.1 %/s}."},
-         &S::strain_rate);
-    kept(declared,
-         {.name = "stress",
-          .type = field_type::section,
-          .unit = "Pa",
-          .default_text = "no stress is given",
-          .sentence = "Stress by component: the value at the end, reached along a straight line, or `hold`."},
-         &S::stress);
+    declared.kept({.name = "strain_rate",
+                   .type = field_type::section,
+                   .unit = "1/s",
+                   .default_text = "0 in all components that `stress` leaves",
+                   .sentence = "Strain rates by component, for example {zz: -0.1 %/s}."},
+                  &S::strain_rate);
+    declared.kept({.name = "stress",
+                   .type = field_type::section,
+                   .unit = "Pa",
+                   .default_text = "no stress is given",
+                   .sentence = "Stress by component: the value at the end, reached along a straight line, or `hold`."},
+                  &S::stress);
     declared.boolean("undrained", &S::undrained, "Constant volume; stresses are then total ones.", false);
     optional_integer(declared, "increments", &S::increments, "as in the file",
                      "Increments of this stage, whatever the file says of all.");
@@ -156,14 +146,13 @@ Schema<Keys> make_schema() {
                               "Void ratio at the start, for the output.", {"that of the material, if it has one"})
                     .quantity("cell_size", &Keys::cell_size, unit::length, above(0),
                               "Size of the cells, for softening with a `reference_width`.", 1.0);
-  kept(schema,
-       {.name = "path",
-        .type = field_type::section,
-        .sentence = "A test by name, or a list of stages.",
-        .required = true,
-        .nested = path_schema().docs(),
-        .alternatives = {{.type = field_type::sections, .nested = stage_schema().docs()}}},
-       &Keys::path);
+  schema.kept({.name = "path",
+               .type = field_type::section,
+               .sentence = "A test by name, or a list of stages.",
+               .required = true,
+               .nested = path_schema().docs(),
+               .alternatives = {{.type = field_type::sections, .nested = stage_schema().docs()}}},
+              &Keys::path);
   optional_integer(schema, "increments", &Keys::increments, "200",
                    "Increments of each stage; from 0 to the end or the first peak in a path by name.");
   schema

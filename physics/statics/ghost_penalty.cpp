@@ -1,5 +1,6 @@
 #include "physics/statics/ghost_penalty.h"
 
+#include <cmath>
 #include <map>
 #include <vector>
 
@@ -35,11 +36,11 @@ Nodes<Dim> sum_up(const Scene<Dim>& scene, const Materials<Dim>& materials) {
   return nodes;
 }
 
-/// k (u_0 - 2 u_1 + u_2)^2 / 2 for all components of three nodes in a row.
+/// k d^2 / 2 for all components of three nodes in a row, with d = sum_i factor_i u_i.
 template <int Dim>
-void add_difference(const Unknowns<Dim>& unknowns, const std::array<Index<Dim>, 3>& nodes, double stiffness,
+void add_difference(const Unknowns<Dim>& unknowns, const std::array<Index<Dim>, 3>& nodes,
+                    const std::array<double, 3>& factor, double stiffness,
                     std::vector<Eigen::Triplet<double>>& entries) {
-  constexpr std::array<double, 3> factor = {1, -2, 1};
   std::array<std::array<int, Dim>, 3> number;
   for (std::size_t i = 0; i < 3; ++i) number[i] = unknowns.find(nodes[i]);
   for (std::size_t a = 0; a < Dim; ++a)
@@ -49,6 +50,20 @@ void add_difference(const Unknowns<Dim>& unknowns, const std::array<Index<Dim>, 
         if (row >= 0 && column >= 0 && column <= row)
           entries.emplace_back(row, column, stiffness * factor[i] * factor[j]);
       }
+}
+
+/// Factors of the second difference (u_0 - u_1) - q (u_1 - u_2), which is zero for what is linear between nodes that
+/// stand at uneven distances, as those of B-splines do at walls.
+template <int Dim>
+std::array<double, 3> difference(const Scene<Dim>& scene, int axis, const std::array<Index<Dim>, 3>& nodes) {
+  std::array<double, 2> step;
+  const double period = scene.grid.max[axis] - scene.grid.min[axis];
+  for (std::size_t i = 0; i < 2; ++i) {
+    step[i] = scene.node_position(axis, nodes[i][axis]) - scene.node_position(axis, nodes[i + 1][axis]);
+    if (scene.grid.periodic[axis]) step[i] -= std::round(step[i] / period) * period;
+  }
+  const double q = step[0] / step[1];
+  return {1, -1 - q, q};
 }
 
 }  // namespace
@@ -70,7 +85,9 @@ Eigen::SparseMatrix<double> ghost_penalty(const Scene<Dim>& scene, const Materia
         };
         if (nodes.contains(inwards(-1)) || !nodes.contains(inwards(1)) || !nodes.contains(inwards(2))) continue;
         const double h = scene.grid.cell[a], modulus = sums.modulus / sums.volume;
-        add_difference<Dim>(unknowns, {place, inwards(1), inwards(2)}, strength * modulus * cell / (h * h), entries);
+        const std::array<Index<Dim>, 3> row = {place, inwards(1), inwards(2)};
+        add_difference<Dim>(unknowns, row, difference<Dim>(scene, a, row), strength * modulus * cell / (h * h),
+                            entries);
       }
   }
   Eigen::SparseMatrix<double> penalty(unknowns.count(), unknowns.count());

@@ -19,7 +19,7 @@
 namespace sluice {
 
 /// The lower triangle of the penalty's stiffness [N/m], of all unknowns that have numbers. `strength` is in units of 2
-/// G: 0.01 is what a node with about so much of its volume has by itself; 0: no penalty.
+/// G: 0.001 is what a node with about so much of its volume has by itself; 0: no penalty.
 template <int Dim>
 Eigen::SparseMatrix<double> ghost_penalty(const Scene<Dim>& scene, const Materials<Dim>& materials,
                                           const Unknowns<Dim>& unknowns, double strength);

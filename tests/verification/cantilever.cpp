@@ -187,7 +187,7 @@ TEST(ReissnerBeam, HasTheLimitOfTheElastica) { EXPECT_NEAR(-Beam::tip()[1] / Bea
 class LargeDeflection : public ::testing::TestWithParam<std::string> {};
 
 // Gates: 1.5 % of the deflection with eight cells in the depth. A beam theory leaves out what is of the order of the
-// square of the strain at the edges, 12 % at the clamp: with 4, 8 and 16 cells B-splines give 1.33, 0.81 and 0.67 %.
+// square of the strain at the edges, 12 % at the clamp: with 4, 8 and 16 cells B-splines give 1.4, 0.9 and 0.7 %.
 // With four the error may be 2.5 %, and it must grow less with refinement than that.
 TEST_P(LargeDeflection, ComesToRestWhereReissnersBeamDoes) {
   const Eigen::Vector2d exact = Beam::tip(), coarse = bent(GetParam(), 0.25), fine = bent(GetParam(), 0.125);
@@ -205,12 +205,12 @@ TEST(GhostPenalty, LetsBendingConverge) {
   EXPECT_THROW(bent("quadratic_bspline", 0.25, ", ghost_penalty: 0"), PhysicsError);
 }
 
-// The penalty is no stiffness that one would notice: a hundred times less and ten times more change the deflection by
-// less than the cells do.
+// The penalty is no stiffness that one would notice: ten times less and ten times more change the deflection by less
+// than the cells do.
 TEST(GhostPenalty, HardlyChangesTheDeflection) {
   const double usual = bent("quadratic_bspline", 0.25)[1];
   EXPECT_NEAR(bent("quadratic_bspline", 0.25, ", ghost_penalty: 1e-4")[1], usual, 0.003 * std::abs(usual));
-  EXPECT_NEAR(bent("quadratic_bspline", 0.25, ", ghost_penalty: 0.1")[1], usual, 0.003 * std::abs(usual));
+  EXPECT_NEAR(bent("quadratic_bspline", 0.25, ", ghost_penalty: 0.01")[1], usual, 0.003 * std::abs(usual));
 }
 
 }  // namespace
