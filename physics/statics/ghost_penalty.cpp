@@ -36,6 +36,14 @@ Nodes<Dim> sum_up(const Scene<Dim>& scene, const Materials<Dim>& materials) {
   return nodes;
 }
 
+/// Whether the grid ends with this node, seen against `side`. B-splines at walls have a third or a sixth of a cell, and
+/// no edge of a body is there.
+template <int Dim>
+bool at_end(const Scene<Dim>& scene, int axis, int side, const Index<Dim>& node) {
+  const int last = scene.grid.cells[axis] + scene.shape->reach() - 1;
+  return !scene.grid.periodic[axis] && node[axis] == (side > 0 ? 0 : last);
+}
+
 /// k d^2 / 2 for all components of three nodes in a row, with d = sum_i factor_i u_i.
 template <int Dim>
 void add_difference(const Unknowns<Dim>& unknowns, const std::array<Index<Dim>, 3>& nodes,
@@ -83,7 +91,9 @@ Eigen::SparseMatrix<double> ghost_penalty(const Scene<Dim>& scene, const Materia
           node[a] += side * steps;
           return scene.grid.wrapped(node);
         };
-        if (nodes.contains(inwards(-1)) || !nodes.contains(inwards(1)) || !nodes.contains(inwards(2))) continue;
+        if (at_end<Dim>(scene, a, side, place) || nodes.contains(inwards(-1)) || !nodes.contains(inwards(1)) ||
+            !nodes.contains(inwards(2)))
+          continue;
         const double h = scene.grid.cell[a], modulus = sums.modulus / sums.volume;
         const std::array<Index<Dim>, 3> row = {place, inwards(1), inwards(2)};
         add_difference<Dim>(unknowns, row, difference<Dim>(scene, a, row), strength * modulus * cell / (h * h),

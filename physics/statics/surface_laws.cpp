@@ -218,7 +218,7 @@ void SurfaceLaws<Dim>::impose(Law& law, std::span<const double> u, const Eigen::
   double most = 0;
   if (law.rule->tangential == FaceCase::Tangential::fixed) most = law.closed ? std::numeric_limits<double>::max() : 0;
   if (law.rule->tangential == FaceCase::Tangential::friction)
-    most = law.rule->friction * std::max(0.0, pressing - loaded) + law.adhesion;
+    most = (law.closed ? law.rule->friction * std::max(0.0, pressing - loaded) : 0) + law.adhesion;
   size = std::sqrt(size);
   law.sticks = !law.dragged && size <= most && most > 0;
   if (law.dragged)

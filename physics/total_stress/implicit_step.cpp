@@ -216,6 +216,7 @@ void ImplicitStep<Dim>::advance(Scene<Dim>& scene, const StressUpdate<Dim>& stre
   scene.faces.begin_step(scene.time, scene.time + dt);
   scene.obstacles.begin_step(scene.time, scene.time, scene.time + dt);
   Forces forces(scene, stress, loads, dt, kind_ == Kind::newmark);
+  if (forces.unknowns.count() == 0) return;  // nothing is left on the grid
   if (scene.time + dt < scene.scheme.gravity_ramp)
     forces.outside -= (1 - (scene.time + dt) / scene.scheme.gravity_ramp) * forces.elastic.weight();
   solve(scene, forces);

@@ -1,5 +1,5 @@
 /// ImplicitStep: a step whose displacements are those at whose end forces balance, without inertia or with that of
-/// Newmark's average acceleration. docs/theory.md, eqs. (29a)-(29g).
+/// Newmark's average acceleration. docs/theory.md, eqs. (29a)-(29h).
 #pragma once
 
 #include <string>

@@ -40,8 +40,7 @@ SceneText membrane(const Discretisation& d) {
 
 /// Mean vertical displacement of the strip over the reference. The load is what the particles of the strip weigh: they
 /// fill it to some per cent only, for its edges are inclined, and the problem is linear. It acts in all of four steps:
-/// the weak spring of (30) resists the motion of each of them, by up to 8 % of the deflection, and so 8 % of 8 % of 8 %
-/// are left of it in the end.
+/// the weak spring of (30) takes 0.3 % from the first, which the others give back.
 double deflection(const Discretisation& d) {
   const auto simulation = simulate(membrane(d));
   take_steps(*simulation, 4);
@@ -57,8 +56,8 @@ double deflection(const Discretisation& d) {
   return moved / weight * (load / (weight * gravity)) / (reference * load / 100);
 }
 
-// Linear functions, four particles a cell. With F-bar the deflection comes to the reference as cells go to zero: 2.3 %,
-// 0.8 %, 0.4 % and 0.1 % short with 4, 8, 16 and 32 cells over the tip; tolerances are about a quarter more. The
+// Linear functions, four particles a cell. With F-bar the deflection comes to the reference as cells go to zero: 1.9 %,
+// 0.6 %, 0.2 % and 0.1 % short with 4, 8, 16 and 32 cells over the tip; tolerances are a half more than that. The
 // inclined edges are staircases of particles, an error of first order that small cells take away, and the corner at the
 // upper end of the clamped side is singular: hence less than the second order of smooth problems. The control: without
 // F-bar half of the deflection is missing with 4 cells, a tenth with 32.
@@ -66,7 +65,7 @@ TEST(CookMembrane, BendsAsItShouldWithFBarOnly) {
   FigureTable table("cook_membrane", "shape,f_bar,cell_m,deflection");
   double locked = 0;
   for (const auto& [cell, tolerance] : {std::pair{4.0, 0.03}, {2.0, 0.01}, {1.0, 0.004}, {0.5, 0.002}}) {
-    if (cell < 1 && figures_folder() == nullptr) continue;  // half a minute
+    if (cell < 1 && figures_folder() == nullptr) continue;
     SCOPED_TRACE(fmt::format("cells of {} m", cell));
     const double with = deflection({cell, "linear", true}), without = deflection({cell, "linear", false});
     table.row("linear", true, cell, with);
@@ -79,8 +78,8 @@ TEST(CookMembrane, BendsAsItShouldWithFBarOnly) {
   EXPECT_LT(deflection({4, "linear", false}), 0.6);
 }
 
-// Nodes of B-splines have more ways to move than linear ones beside as many particles: 5 % (quadratic) and 3 % (cubic)
-// short with 4 cells over the tip, and with half the cells half of that.
+// Nodes of B-splines have more ways to move than linear ones beside as many particles: 5.4 % (quadratic) and 2.6 %
+// (cubic) short with 4 cells over the tip, and with half the cells half of that.
 TEST(CookMembrane, BSplinesHardlyLock) {
   FigureTable table("cook_membrane", "shape,f_bar,cell_m,deflection");
   for (const double cell : {4.0, 2.0, 1.0, 0.5})
@@ -93,8 +92,8 @@ TEST(CookMembrane, BSplinesHardlyLock) {
     }
 }
 
-// With F-bar, whose cells reach from node to node there, nothing is short: 2.1, 0.7 and 0.3 % (uGIMP), 0.5, 0.3 and
-// 0.2 % (quadratic), and 2.1, 0.7 and 0.2 % too far (cubic).
+// With F-bar, whose cells reach from node to node there: 1.9, 0.6 and 0.2 % short (uGIMP), 0.5, 0.2 and 0.0 %
+// (quadratic) and 3.2, 1.1 and 0.4 % (cubic) too far. Tolerances are a quarter more than the largest.
 TEST(CookMembrane, BSplinesTakeFBar) {
   FigureTable table("cook_membrane", "shape,f_bar,cell_m,deflection");
   for (const double cell : {4.0, 2.0, 1.0, 0.5})
@@ -103,7 +102,7 @@ TEST(CookMembrane, BSplinesTakeFBar) {
       SCOPED_TRACE(fmt::format("{}, cells of {} m", shape, cell));
       const double found = deflection({cell, shape, true});
       table.row(shape, true, cell, found);
-      EXPECT_NEAR(found, 1, 0.03 * cell / 4);
+      EXPECT_NEAR(found, 1, 0.04 * cell / 4);
     }
 }
 
