@@ -469,12 +469,16 @@ def with_unit(name):
 
 
 def draw_history(table, path):
-    """Kinetic energy; the change of all energies since the start; the time step by what limits it."""
+    """Kinetic energy; the change of all energies since the start; the time step by what limits it; forces on faces and
+    obstacles, where there are any."""
     time = np.array(table["time_s"], float)
     energies = {name: np.array(table[name], float) for name in table if "energy" in name}
     kinetic = energies.get("kinetic_energy_J")
     step = np.array(table["dt_s"], float)
-    figure, axes = plt.subplots(3, 1, figsize=(7, 7), sharex=True, layout="constrained")
+    forces = {name: np.array(table[name], float) for name in table if "_force_" in name}
+    forces = {name: force for name, force in forces.items() if np.abs(force).max() > 0}
+    panels = 4 if forces else 3
+    figure, axes = plt.subplots(panels, 1, figsize=(7, 7 / 3 * panels), sharex=True, layout="constrained")
     if kinetic is not None and kinetic.max() > 0:
         axes[0].semilogy(time, np.maximum(kinetic, 1e-6 * kinetic.max()), color="#4477aa", linewidth=1.2)
         axes[0].axhline(1e-3 * kinetic.max(), color="0.6", linewidth=0.8, linestyle="--")
@@ -493,8 +497,14 @@ def draw_history(table, path):
     for name in dict.fromkeys(limiter[taken]):
         chosen = taken & (limiter == name)
         axes[2].plot(time[chosen], step[chosen], ".", markersize=3, label=name)
-    axes[2].set(ylabel="time step [s]", ylim=(0, None), xlabel="time [s]")
+    axes[2].set(ylabel="time step [s]", ylim=(0, None))
     axes[2].legend(frameon=False, fontsize=8, title="limited by", title_fontsize=8)
+    for name, force in forces.items():
+        axes[3].plot(time, force, label=name.removesuffix("_N").replace("_force_", ", ").replace("_", " "), linewidth=1.2)
+    if forces:
+        axes[3].set_ylabel("force of the material on it [N]")
+        axes[3].legend(frameon=False, fontsize=8, ncol=2)
+    axes[-1].set_xlabel("time [s]")
     figure.savefig(path, bbox_inches="tight", pad_inches=0.06)
     plt.close(figure)
 
