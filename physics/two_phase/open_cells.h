@@ -53,6 +53,11 @@ class OpenCells {
   const std::vector<char>& may_part() const { return may_part_; }
   /// The open part of a vertex's surroundings: the integral of its shape function [m^Dim].
   double around(const typename PressureGrid<Dim>::Vertex& vertex, const GridGeometry<Dim>& geometry) const;
+  /// Whether that is less than a quarter of what it would be without obstacles (half is the room of a vertex on a
+  /// plane): few particles are in so little room, or none, and whether it is wet its neighbours know better.
+  bool leaves_little(const typename PressureGrid<Dim>::Vertex& vertex, const GridGeometry<Dim>& geometry) const {
+    return around(vertex, geometry) < 0.25 * vertex.share * geometry.cell_volume();
+  }
 
  private:
   void mark_vertices(const PressureGrid<Dim>& grid, const std::vector<char>& contact);

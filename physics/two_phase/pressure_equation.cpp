@@ -23,11 +23,9 @@ constexpr double least_share = 0.05;
 constexpr double least_continued_share = 0.25;
 /// Volume that may go astray in a cell in a step, as share of the cell.
 constexpr double volume_tolerance = 1e-9;
-/// With less room around it than this, as share of what it would have without obstacles, a vertex asks its neighbours
-/// whether it is wet: few particles are in so little room, or none. Half is the room of a vertex on a plane.
-constexpr double little_room = 0.25;
 constexpr double no_room = 1e-9;  // cells: round-off
-/// Such a vertex follows with a share of a step's delay: water that an obstacle has closed in has a pressure then.
+/// A vertex to which obstacles leave little room follows with a share of a step's delay: water that an obstacle has
+/// closed in has a pressure then.
 constexpr double little_lag = 0.1;
 /// A pressure that is less than this share of those around is none: particles bring zero back with some error.
 constexpr double no_pressure = 1e-3;
@@ -230,7 +228,7 @@ void PressureEquation<Dim>::classify_beside_obstacle(std::size_t v) {
     return;
   }
   double water = vertex_sum(v)[0], all = room;
-  little_[v] = room < little_room * vertex.share * geometry_.cell_volume() ? 1 : 0;
+  little_[v] = open_.leaves_little(vertex, geometry_) ? 1 : 0;
   if (little_[v] != 0)
     for (const std::int32_t other : vertex.neighbour) {
       if (other < 0) continue;

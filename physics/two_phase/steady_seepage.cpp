@@ -70,15 +70,31 @@ class Seepage {
     given
   };
 
-  double fill(std::size_t v) const {
-    double volume = 0, room = grid_.vertices()[v].share * Grid::corners * geometry_.cell_volume();
-    for (const std::int32_t c : grid_.vertices()[v].cell) {
+  struct Room {
+    double soil = 0, all = 0;  // [m^Dim]
+  };
+  Room room_of(const typename Grid::Vertex& vertex) const {
+    Room room{0, vertex.share * Grid::corners * geometry_.cell_volume()};
+    for (const std::int32_t c : vertex.cell) {
       if (c < 0) continue;
-      volume += sums_[static_cast<std::size_t>(c)].volume;
+      room.soil += sums_[static_cast<std::size_t>(c)].volume;
       if (const OpenCell<Dim>* const cell = open_.of(static_cast<std::size_t>(c)))
-        room += cell->volume() - geometry_.cell_volume();
+        room.all += cell->volume() - geometry_.cell_volume();
     }
-    return room > 0 ? volume / room : 0;
+    return room;
+  }
+
+  double fill(std::size_t v) const {
+    const auto& vertex = grid_.vertices()[v];
+    Room room = room_of(vertex);
+    if (room.soil > 0 && open_.any() && open_.leaves_little(vertex, geometry_))
+      for (const std::int32_t other : vertex.neighbour) {
+        if (other < 0) continue;
+        const Room beside = room_of(grid_.vertices()[static_cast<std::size_t>(other)]);
+        room.soil += beside.soil;
+        room.all += beside.all;
+      }
+    return room.all > 0 ? room.soil / room.all : 0;
   }
 
   void classify(std::size_t v, const WaterCase& water, const ExternalPressure<Dim>& outside, double unit_weight,
@@ -137,15 +153,19 @@ class Seepage {
   template <class Couple, class Push>
   void for_cell(std::size_t c, const Couple& couple, const Push& push) const {
     if (!(sums_[c].volume > 0)) return;
-    const double weight = relative_[c] / geometry_.cell_volume();
+    const OpenCell<Dim>* const part = open_.of(c);
+    // A cell that an obstacle cuts has the mean of its particles, however few there are, in its open part.
+    const double weight = relative_[c] / (part == nullptr ? geometry_.cell_volume() : sums_[c].volume);
     for (std::size_t m = 0; m < Grid::corners; ++m) {
       double flow = 0;
-      for (std::size_t a = 0; a < Dim; ++a) flow += weight * sums_[c].push[a] * integrals_.slope[a][m];
+      for (std::size_t a = 0; a < Dim; ++a)
+        flow += weight * sums_[c].push[a] * (part == nullptr ? integrals_.slope[a][m] : part->slope[a][m]);
       push(m, flow);
       for (std::size_t n = 0; n < Grid::corners; ++n) {
         double coupling = 0;
         for (std::size_t a = 0; a < Dim; ++a)
-          coupling += weight * sums_[c].mobility[a] * integrals_.laplacian[a][m ^ n];
+          coupling += weight * sums_[c].mobility[a] *
+                      (part == nullptr ? integrals_.laplacian[a][m ^ n] : part->products[a][m][n]);
         couple(m, n, coupling);
       }
     }

@@ -19,7 +19,7 @@ struct SteadySeepage {
 /// Solves div(k_r K (grad p - rho_w g)) = 0 on the cells that hold soil, k_r the share of a cell below the surface p =
 /// 0: pressure where faces and ponds give it, no flow through the rest of the surface but outward where the pressure
 /// would be positive (a seepage face). `sums` by cell; pushes are those of gravity. Surfaces of obstacles, of which
-/// `open` knows, let nothing through; a cell that one cuts conducts by as much as it holds, not along the surface.
+/// `open` knows, let nothing through.
 /// `time` [s] is that of faces and ponds. Throws CaseError if nothing gives a pressure, or if it does not settle.
 template <int Dim>
 SteadySeepage solve_steady_seepage(const PressureGrid<Dim>& grid, const std::vector<CellSums<Dim>>& sums,

@@ -335,6 +335,32 @@ TEST(PressureAtObstacles, SteadySeepageKnowsTheFloor) {
   EXPECT_NEAR(discharge / (1e-4 * 10e3 / unit_weight), 1, 1e-6);
 }
 
+// The same over a floor that rises across the cells, from a quarter to two thirds of the height: the pressure that the
+// seepage begins with solves the equations of the steps, too, and stays. Within 1 % of the difference between the
+// heads; measured: 0.5 %, in cells that the floor cuts, where single particles stand for the whole open part. Control,
+// measured: with the integrals of whole cells, and vertices in little room taken for a surface, it changes by 23 %.
+TEST(PressureAtObstacles, SteadySeepageOverASlopeStays) {
+  SceneText scene{.grid = "{min: [0 m, 0 m], max: [4 m, 2 m], cell: 0.25 m}",
+                  .material =
+                      "{model: linear_elastic, density: 1600 kg/m3, youngs_modulus: 10 MPa, poisson_ratio: 0.3, "
+                      "water: {porosity: 0.4, permeability: 1e-4 m/s}}",
+                  .bodies = "  - {material: soil, polygon: [[0 m, 0.5 m], [4 m, 1.3 m], [4 m, 2 m], [0 m, 2 m]]}",
+                  .boundaries = "{left: fixed, right: fixed, top: fixed}",
+                  .initial_stress = "{method: elastic_equilibrium}",
+                  .physics = "two_phase"};
+  scene.more =
+      "water: {initial: {method: steady_seepage}, faces: {left: {pressure: 80 kPa}, right: {pressure: 40 kPa}}}\n"
+      "obstacles: {floor: {polygon: [[-1 m, -1 m], [5 m, -1 m], [5 m, 1.5 m], [-1 m, 0.3 m]], normal: fixed, "
+      "tangential: fixed}}\n";
+  const auto simulation = simulate(scene);
+  const auto start = by_id(simulation->particles(), "pore_pressure");
+  take_steps(*simulation, 200);
+  const auto end = by_id(simulation->particles(), "pore_pressure");
+  double largest = 0;
+  for (std::size_t p = 0; p < start.size(); ++p) largest = std::max(largest, std::abs(end[p] - start[p]));
+  EXPECT_LT(largest, 0.01 * 40e3);
+}
+
 // ---- the same bits ----
 
 TEST(PressureAtObstacles, DependsNeitherOnThreadsNorOnRestarts) {
