@@ -307,20 +307,28 @@ TEST(PressureAtObstacles, FrictionIsThatOfTheEffectiveStress) {
 
 // ---- flow ----
 
+/// A layer between two heads on the faces of the grid, 80 and 40 kPa, closed above and, by the obstacle, below. No
+/// gravity.
+SceneText confined_layer(const std::string& body, const std::string& floor) {
+  return {
+      .grid = "{min: [0 m, 0 m], max: [4 m, 2 m], cell: 0.25 m}",
+      .material =
+          "{model: linear_elastic, density: 1600 kg/m3, youngs_modulus: 10 MPa, poisson_ratio: 0.3, "
+          "water: {porosity: 0.4, permeability: 1e-4 m/s}}",
+      .bodies = "  - {material: soil, " + body + "}",
+      .boundaries = "{left: fixed, right: fixed, top: fixed}",
+      .physics = "two_phase",
+      .more =
+          "water: {initial: {method: steady_seepage}, faces: {left: {pressure: 80 kPa}, right: {pressure: 40 kPa}}}\n"
+          "obstacles: {floor: {" +
+          floor + "}}\n"};
+}
+
 // A confined layer between two heads, of which a step in the floor takes the lower half over its whole length: the flow
 // is that through the upper half, i k H / 2, and the gradient is uniform. Heads on the faces of the grid, no gravity.
 TEST(PressureAtObstacles, SteadySeepageKnowsTheFloor) {
-  SceneText scene{.grid = "{min: [0 m, 0 m], max: [4 m, 2 m], cell: 0.25 m}",
-                  .material =
-                      "{model: linear_elastic, density: 1600 kg/m3, youngs_modulus: 10 MPa, poisson_ratio: 0.3, "
-                      "water: {porosity: 0.4, permeability: 1e-4 m/s}}",
-                  .bodies = "  - {material: soil, box: {min: [0 m, 1 m], max: [4 m, 2 m]}}",
-                  .boundaries = "{left: fixed, right: fixed, top: fixed}",
-                  .physics = "two_phase"};
-  scene.more =
-      "water: {initial: {method: steady_seepage}, faces: {left: {pressure: 80 kPa}, right: {pressure: 40 kPa}}}\n"
-      "obstacles: {floor: {box: {min: [-1 m, -1 m], max: [5 m, 1 m]}, normal: fixed}}\n";
-  const auto simulation = simulate(scene);
+  const auto simulation = simulate(confined_layer("box: {min: [0 m, 1 m], max: [4 m, 2 m]}",
+                                                  "box: {min: [-1 m, -1 m], max: [5 m, 1 m]}, normal: fixed"));
   const auto exact_off = [&] {
     const Particles& ps = simulation->particles();
     const auto p = by_id(ps, "pore_pressure"), x = by_id(ps, "position", 0);
@@ -340,18 +348,10 @@ TEST(PressureAtObstacles, SteadySeepageKnowsTheFloor) {
 // heads; measured: 0.5 %, in cells that the floor cuts, where single particles stand for the whole open part. Control,
 // measured: with the integrals of whole cells, and vertices in little room taken for a surface, it changes by 23 %.
 TEST(PressureAtObstacles, SteadySeepageOverASlopeStays) {
-  SceneText scene{.grid = "{min: [0 m, 0 m], max: [4 m, 2 m], cell: 0.25 m}",
-                  .material =
-                      "{model: linear_elastic, density: 1600 kg/m3, youngs_modulus: 10 MPa, poisson_ratio: 0.3, "
-                      "water: {porosity: 0.4, permeability: 1e-4 m/s}}",
-                  .bodies = "  - {material: soil, polygon: [[0 m, 0.5 m], [4 m, 1.3 m], [4 m, 2 m], [0 m, 2 m]]}",
-                  .boundaries = "{left: fixed, right: fixed, top: fixed}",
-                  .initial_stress = "{method: elastic_equilibrium}",
-                  .physics = "two_phase"};
-  scene.more =
-      "water: {initial: {method: steady_seepage}, faces: {left: {pressure: 80 kPa}, right: {pressure: 40 kPa}}}\n"
-      "obstacles: {floor: {polygon: [[-1 m, -1 m], [5 m, -1 m], [5 m, 1.5 m], [-1 m, 0.3 m]], normal: fixed, "
-      "tangential: fixed}}\n";
+  SceneText scene = confined_layer("polygon: [[0 m, 0.5 m], [4 m, 1.3 m], [4 m, 2 m], [0 m, 2 m]]",
+                                   "polygon: [[-1 m, -1 m], [5 m, -1 m], [5 m, 1.5 m], [-1 m, 0.3 m]], normal: fixed, "
+                                   "tangential: fixed");
+  scene.initial_stress = "{method: elastic_equilibrium}";
   const auto simulation = simulate(scene);
   const auto start = by_id(simulation->particles(), "pore_pressure");
   take_steps(*simulation, 200);
