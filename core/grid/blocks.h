@@ -34,6 +34,12 @@ struct ParticleBlock {
 template <int Dim>
 struct NodeBlock {
   Index<Dim> first_node;
+  /// The node with this number in the block, the first axis fastest.
+  Index<Dim> node(int number) const {
+    Index<Dim> place = first_node;
+    for (int a = 0; a < Dim; ++a, number /= block_width<Dim>) place[a] += number % block_width<Dim>;
+    return place;
+  }
   Index<Dim> low, high;  ///< the part [low, high) of the block that particles can reach
   std::array<std::int32_t, neighbourhood<Dim>> particles{};  ///< the particle blocks around it; -1: none there
 };

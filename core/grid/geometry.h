@@ -49,6 +49,12 @@ struct GridGeometry {
       if (periodic[a]) place[a] = (place[a] % cells[a] + cells[a]) % cells[a];
     return place;
   }
+  /// A way along an axis, by the shortest of all turns where the axis is periodic [m].
+  double shortest(int axis, double way) const {
+    const auto a = static_cast<std::size_t>(axis);
+    const double period = max[a] - min[a];
+    return periodic[a] ? way - std::round(way / period) * period : way;
+  }
   /// The grid as shape functions see it: a periodic axis goes on for a block beyond both of its ends, so that no wall
   /// is near, and a particle that has crossed an end since the last sort is where it is.
   GridGeometry unrolled() const {

@@ -125,14 +125,10 @@ namespace {
 /// Calls visit(number in the block, node) for the nodes of a block within [low, high) of the grid.
 template <int Dim, class Visit>
 void for_nodes(const NodeBlock<Dim>& nodes, const std::array<Index<Dim>, 2>& range, const Visit& visit) {
-  constexpr int width = block_width<Dim>;
   for (int n = 0; n < block_nodes<Dim>; ++n) {
-    Index<Dim> node;
+    const Index<Dim> node = nodes.node(n);
     bool reached = true;
-    for (int a = 0, rest = n; a < Dim; ++a, rest /= width) {
-      node[a] = nodes.first_node[a] + rest % width;
-      reached = reached && node[a] >= range[0][a] && node[a] < range[1][a];
-    }
+    for (int a = 0; a < Dim; ++a) reached = reached && node[a] >= range[0][a] && node[a] < range[1][a];
     if (reached) visit(n, node);
   }
 }
@@ -241,10 +237,9 @@ void Obstacles<Dim>::press(const NodeBlock<Dim>& nodes, std::size_t block, const
 }
 
 template <int Dim>
-void Obstacles<Dim>::add_relief(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, double kick,
-                                Lane* relief) {
-  if (!any()) return;
-  for (const Near& near : surroundings(nodes, block)) {
+void Obstacles<Dim>::add_relief(std::size_t block, const Lane* momentum, double kick, Lane* relief) const {
+  if (!any() || blocks_[block].near_version != version_) return;  // nothing has pressed on them
+  for (const Near& near : blocks_[block].near) {
     const double mass = momentum[near.node][0];
     for (int a = 0; a < Dim && mass > 0; ++a) relief[near.node][a] += kick / mass * near.traction[a];
   }

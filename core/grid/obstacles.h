@@ -62,7 +62,7 @@ class Obstacles {
   void press(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* slopes, const Lane* spread, Lane* force,
              bool again);
   /// Adds the velocities that these tractions give within `kick` to `relief`, which Beside has.
-  void add_relief(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, double kick, Lane* relief);
+  void add_relief(std::size_t block, const Lane* momentum, double kick, Lane* relief) const;
 
   /// Makes room for so many blocks of nodes; forgets what is known of those that are there.
   void resize(std::size_t node_blocks);

@@ -194,7 +194,7 @@ void impose_boundaries(Scene<Dim>& scene, NodeFields<Dim>& nodes, std::size_t b,
   };
   if (without_friction != nullptr) {
     beside.relief = take(*without_friction, 1, relief);
-    scene.obstacles.add_relief(block, b, momentum, kick, relief.data());
+    scene.obstacles.add_relief(b, momentum, kick, relief.data());
   }
   if (scene.wants_area()) beside.area = take(scene.surface, -1, area);
   scene.dashpots.impose(block, nodes.motion(b), beside.area, kick, scene.step == 0);

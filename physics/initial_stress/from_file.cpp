@@ -119,9 +119,9 @@ std::string difference(const Scene<Dim>& scene, const Earlier& earlier, std::vec
     if (there != here) return fmt::format("particle {} is of '{}' there, of '{}' here", ps.id[p], there, here);
     for (int a = 0; a < Dim; ++a) {
       const std::size_t at = 3 * k + static_cast<std::size_t>(a);
-      double off = earlier.points[at] - earlier.displacement[at] - ps.columns.data(ps.initial_position, a)[p];
-      const double period = scene.grid.max[a] - scene.grid.min[a];
-      if (scene.grid.periodic[a]) off -= std::round(off / period) * period;  // displacements count every turn
+      // Displacements count every turn.
+      const double off = scene.grid.shortest(
+          a, earlier.points[at] - earlier.displacement[at] - ps.columns.data(ps.initial_position, a)[p]);
       if (!(std::abs(off) < tolerance)) return fmt::format("particle {} began elsewhere", ps.id[p]);
     }
   }

@@ -1,6 +1,5 @@
 #include "physics/statics/ghost_penalty.h"
 
-#include <cmath>
 #include <map>
 #include <vector>
 
@@ -65,11 +64,9 @@ void add_difference(const Unknowns<Dim>& unknowns, const std::array<Index<Dim>, 
 template <int Dim>
 std::array<double, 3> difference(const Scene<Dim>& scene, int axis, const std::array<Index<Dim>, 3>& nodes) {
   std::array<double, 2> step;
-  const double period = scene.grid.max[axis] - scene.grid.min[axis];
-  for (std::size_t i = 0; i < 2; ++i) {
-    step[i] = scene.node_position(axis, nodes[i][axis]) - scene.node_position(axis, nodes[i + 1][axis]);
-    if (scene.grid.periodic[axis]) step[i] -= std::round(step[i] / period) * period;
-  }
+  for (std::size_t i = 0; i < 2; ++i)
+    step[i] = scene.grid.shortest(
+        axis, scene.node_position(axis, nodes[i][axis]) - scene.node_position(axis, nodes[i + 1][axis]));
   const double q = step[0] / step[1];
   return {1, -1 - q, q};
 }
@@ -79,6 +76,8 @@ std::array<double, 3> difference(const Scene<Dim>& scene, int axis, const std::a
 template <int Dim>
 Eigen::SparseMatrix<double> ghost_penalty(const Scene<Dim>& scene, const Materials<Dim>& materials,
                                           const Unknowns<Dim>& unknowns, double strength) {
+  Eigen::SparseMatrix<double> penalty(unknowns.count(), unknowns.count());
+  if (strength == 0) return penalty;
   const Nodes<Dim> nodes = sum_up(scene, materials);
   const double cell = scene.grid.cell_volume();
   std::vector<Eigen::Triplet<double>> entries;
@@ -100,7 +99,6 @@ Eigen::SparseMatrix<double> ghost_penalty(const Scene<Dim>& scene, const Materia
                             entries);
       }
   }
-  Eigen::SparseMatrix<double> penalty(unknowns.count(), unknowns.count());
   penalty.setFromTriplets(entries.begin(), entries.end());
   return penalty;
 }

@@ -113,8 +113,7 @@ std::string place_of(const Scene<Dim>& scene, const Unknowns<Dim>& unknowns, int
   std::vector<std::string> place;
   for (const auto& block : scene.blocks.node_blocks())
     for (int n = 0; n < block_nodes<Dim>; ++n) {
-      Index<Dim> node = block.first_node;
-      for (int a = 0; a < Dim; ++a) node[a] += n / power(block_width<Dim>, a) % block_width<Dim>;
+      const Index<Dim> node = block.node(n);
       const auto own = unknowns.find(node);
       if (std::find(own.begin(), own.end(), unknown) == own.end()) continue;
       for (int a = 0; a < Dim; ++a) place.push_back(fmt::format("{:.4g}", scene.node_position(a, node[a])));

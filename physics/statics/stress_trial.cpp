@@ -47,8 +47,7 @@ StressTrial<Dim>::StressTrial(Scene<Dim>& scene, const StressUpdate<Dim>& stress
     : scene_(scene), stress_(stress), kinematics_(kinematics) {
   for (const NodeBlock<Dim>& block : scene.blocks.node_blocks())
     for (int n = 0; n < block_nodes<Dim>; ++n) {
-      Index<Dim> node = block.first_node;
-      for (int a = 0; a < Dim; ++a) node[a] += n / power(block_width<Dim>, a) % block_width<Dim>;
+      const Index<Dim> node = block.node(n);
       unknown_.push_back(unknowns.find(node));
     }
   const std::size_t count = scene.particles.size();

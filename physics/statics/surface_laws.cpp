@@ -58,8 +58,7 @@ std::vector<Vector<Dim>> SurfaceLaws<Dim>::areas(const Unknowns<Dim>& unknowns) 
   for (std::size_t b = 0; b < scene_.blocks.node_blocks().size(); ++b) {
     scene_.surface.collect_force(scene_.blocks, b);
     for (int n = 0; n < block_nodes<Dim>; ++n) {
-      Index<Dim> node = scene_.blocks.node_blocks()[b].first_node;
-      for (int a = 0; a < Dim; ++a) node[a] += n / power(block_width<Dim>, a) % block_width<Dim>;
+      const Index<Dim> node = scene_.blocks.node_blocks()[b].node(n);
       const int first = unknowns.find(node)[0];
       if (first < 0) continue;
       for (int a = 0; a < Dim; ++a) area[static_cast<std::size_t>(first) / Dim][a] = -scene_.surface.force(b)[n][1 + a];

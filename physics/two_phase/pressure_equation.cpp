@@ -329,12 +329,7 @@ typename PressureEquation<Dim>::Crossing PressureEquation<Dim>::crossing(std::si
   const Vector<Dim> from = geometry_.vertex(grid_.vertices()[inside].place),
                     to = geometry_.vertex(grid_.vertices()[neighbour].place);
   Vector<Dim> x;
-  for (int a = 0; a < Dim; ++a) {
-    double step = to[a] - from[a];
-    const double period = geometry_.max[a] - geometry_.min[a];
-    if (geometry_.periodic[a]) step -= std::round(step / period) * period;
-    x[a] = from[a] + share * step;
-  }
+  for (int a = 0; a < Dim; ++a) x[a] = from[a] + share * geometry_.shortest(a, to[a] - from[a]);
   return {share, outside.of_ponds(x, time)};
 }
 
