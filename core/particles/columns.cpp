@@ -60,14 +60,6 @@ void Columns::resize(std::size_t size) {
   size_ = size;
 }
 
-double* Columns::data(ColumnId id, int component) {
-  return arrays_[static_cast<std::size_t>(id.index)][static_cast<std::size_t>(component)].get();
-}
-
-const double* Columns::data(ColumnId id, int component) const {
-  return arrays_[static_cast<std::size_t>(id.index)][static_cast<std::size_t>(component)].get();
-}
-
 ColumnId Columns::find(const std::string& name) const {
   for (std::size_t i = 0; i < specs_.size(); ++i)
     if (specs_[i].name == name) return {static_cast<int>(i)};

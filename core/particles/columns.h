@@ -47,8 +47,12 @@ class Columns {
   void resize(std::size_t size);
   std::size_t size() const { return size_; }
 
-  double* data(ColumnId id, int component = 0);
-  const double* data(ColumnId id, int component = 0) const;
+  double* data(ColumnId id, int component = 0) {
+    return arrays_[static_cast<std::size_t>(id.index)][static_cast<std::size_t>(component)].get();
+  }
+  const double* data(ColumnId id, int component = 0) const {
+    return arrays_[static_cast<std::size_t>(id.index)][static_cast<std::size_t>(component)].get();
+  }
   /// All components of a column that has N of them.
   template <std::size_t N>
   std::array<const double*, N> pointers(ColumnId id) const {

@@ -142,6 +142,24 @@ SLUICE_ALWAYS_INLINE Lane divergence_weights(double value, double slope, int axi
   return w;
 }
 
+/// Adds {0, s grad N} to every node of one particle: the transpose of the divergence, and like it one product a node.
+template <int Dim, class Shape>
+SLUICE_ALWAYS_INLINE void add_gradient(const ChunkWeights<Dim, Shape>& w, int p, double s, Lane* tile) {
+  constexpr int nodes = Shape::nodes;
+  Lane* const origin = tile + w.base[p];
+  Lane along_x[nodes];
+  for (int i = 0; i < nodes; ++i) along_x[i] = divergence_weights(w.value[0][i][p], w.slope[0][i][p], 1);
+  for (int k = 0; k < (Dim == 3 ? nodes : 1); ++k) {
+    Lane plane{0, s, s, Dim == 3 ? s : 0};
+    if constexpr (Dim == 3) plane *= divergence_weights(w.value[2][k][p], w.slope[2][k][p], 3);
+    for (int j = 0; j < nodes; ++j) {
+      const Lane row = plane * divergence_weights(w.value[1][j][p], w.slope[1][j][p], 2);
+      Lane* const node = origin + j * tile_stride<Dim, Shape>(1) + k * tile_stride<Dim, Shape>(2);
+      for (int i = 0; i < nodes; ++i) node[i] += along_x[i] * row;
+    }
+  }
+}
+
 /// {dvx/dx, dvy/dy, dvx, dvy} of one particle in 2-D, {dvx/dx, dvy/dy, dvz/dz, 0} and {dvx, dvy, dvz, 0} in 3-D: one
 /// product a node and lane, because each component has slopes along its own axis only.
 template <int Dim, class Shape>

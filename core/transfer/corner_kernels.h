@@ -179,6 +179,14 @@ SLUICE_ALWAYS_INLINE Gathered<Dim> sum_nodes(const CornerWeights<Dim, Shape>& w,
   return sum;
 }
 
+/// As for points: {0, s grad N} to every node of one particle.
+template <int Dim, class Shape>
+SLUICE_ALWAYS_INLINE void add_gradient(const CornerWeights<Dim, Shape>& w, int p, double s, Lane* tile) {
+  Lane flux[Dim] = {};
+  for (int a = 0; a < Dim; ++a) flux[a][1 + a] = s;
+  add_to_nodes<Dim, Shape, false, true>(w, p, Lane{}, nullptr, flux, tile);
+}
+
 /// As for points: {dvx/dx, dvy/dy, dvx, dvy} of one particle in 2-D, and its kin in two lanes in 3-D.
 template <int Dim, class Shape>
 SLUICE_ALWAYS_INLINE void sum_divergence(const CornerWeights<Dim, Shape>& w, int p, const Lane* motion_tile,

@@ -335,5 +335,17 @@ SLUICE_MULTITARGET void gather_divergence(const BlockParticles<Dim>& block, cons
   }
 }
 
+template <int Dim, class Shape>
+SLUICE_MULTITARGET void scatter_pressure(const BlockParticles<Dim>& block, const double* volume, const double* pressure,
+                                         Lane* tile) {
+  std::memset(static_cast<void*>(tile), 0, sizeof(Lane) * power(tile_row<Dim, Shape>, Dim));
+  typename WeightsOf<Dim, Shape>::type w;
+  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
+    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
+    weigh<Dim, Shape, false, false>(block, begin, count, w);
+    for (int p = 0; p < count; ++p) add_gradient<Dim, Shape>(w, p, volume[begin + p] * pressure[begin + p], tile);
+  }
+}
+
 }  // namespace kernel
 }  // namespace sluice

@@ -165,6 +165,9 @@ class ShapeKernels {
   /// The divergence of the nodes' velocity [1/s] and the nodes' change of velocity [m/s] at the particles.
   virtual void gather_divergence(const BlockParticles<Dim>& particles, const Lane* motion_tile, double* divergence,
                                  const std::array<double*, Dim>& change) const = 0;
+  /// The forces of a pressure (p > 0 in compression), {0, V p grad N}: the transpose of the divergence.
+  virtual void scatter_pressure(const BlockParticles<Dim>& particles, const double* volume, const double* pressure,
+                                Lane* tile) const = 0;
   /// The velocity of the nodes to particles, and at once to nodes again: {m, m v} in `tile`.
   virtual void map_again(const BlockParticles<Dim>& particles, const double* mass, const Lane* motion_tile,
                          Lane* tile) const = 0;

@@ -118,6 +118,11 @@ class ShapeKernelsOf final : public ShapeKernels<Dim> {
     kernel::gather_divergence<Dim, Shape>(particles, motion_tile, divergence, change);
   }
 
+  void scatter_pressure(const BlockParticles<Dim>& particles, const double* volume, const double* pressure,
+                        Lane* tile) const override {
+    kernel::scatter_pressure<Dim, Shape>(particles, volume, pressure, tile);
+  }
+
   void map_again(const BlockParticles<Dim>& particles, const double* mass, const Lane* motion_tile,
                  Lane* tile) const override {
     kernel::map_again<Dim, Shape>(particles, mass, motion_tile, tile);

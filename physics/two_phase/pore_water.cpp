@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "core/parallel/multitarget.h"
 
@@ -151,15 +153,6 @@ void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const Part
 }
 
 template <int Dim>
-void PoreWater<Dim>::scatter_isotropic(const Scene<Dim>& scene, const ParticleBlock<Dim>& block, const double* stress,
-                                       Lane* force_tile) const {
-  ScatterInput<Dim> in = scene.scatter_input(block);
-  in.stress.fill(scene.particles.columns.data(zero_));
-  for (int a = 0; a < Dim; ++a) in.stress[a] = stress;
-  scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, force_tile);
-}
-
-template <int Dim>
 void PoreWater<Dim>::take_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                                    Workspace<Dim>& work, const PressureEquation<Dim>& equation) {
   Columns& columns = scene.particles.columns;
@@ -193,12 +186,13 @@ void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlo
   take_pressure(scene, b, block, work, equation);
   const double* added = columns.data(new_pressure_);
   double* pressure = columns.data(pressure_);
-  double* stress = columns.data(total_stress_);
+  double* change = columns.data(total_stress_);
   for (std::uint32_t p = block.begin; p < block.end; ++p) {
-    stress[p] = water_.increment * pressure[p] - added[p];
+    change[p] = added[p] - water_.increment * pressure[p];
     pressure[p] = added[p];
   }
-  scatter_isotropic(scene, block, stress, scene.nodes.force_tile(b));
+  scene.shape->scatter_pressure(scene.view(block), columns.data(scene.particles.volume), change,
+                                scene.nodes.force_tile(b));
 }
 
 template <int Dim>
@@ -206,13 +200,13 @@ void PoreWater<Dim>::scatter_pressure(Scene<Dim>& scene, std::size_t b, const Pa
                                       const ExternalPressure<Dim>& outside, NodeFields<Dim>& nodes) {
   Columns& columns = scene.particles.columns;
   const double* pressure = columns.data(pressure_);
-  double* stress = columns.data(total_stress_);
-  for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] = -pressure[p];
+  double* excess = columns.data(total_stress_);
+  std::copy(pressure + block.begin, pressure + block.end, excess + block.begin);
   if (outside.any()) {
     const double* here = pressed_.pressure(scene.particles);
-    for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] += here[p];
+    for (std::uint32_t p = block.begin; p < block.end; ++p) excess[p] -= here[p];
   }
-  scatter_isotropic(scene, block, stress, nodes.force_tile(b));
+  scene.shape->scatter_pressure(scene.view(block), columns.data(scene.particles.volume), excess, nodes.force_tile(b));
 }
 
 // ---- to cells and vertices ----
@@ -252,8 +246,9 @@ void PoreWater<Dim>::collect_at_rest(Scene<Dim>& scene, PressureEquation<Dim>& e
 template <int Dim>
 double PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
                                const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation) {
-  std::fill_n(equation.cell_sums(b), cell_tile<Dim>, CellSums<Dim>{});
-  std::fill_n(equation.vertex_tile(b), PressureGrid<Dim>::vertex_tile, Lane{});
+  static_assert(std::is_trivially_copyable_v<CellSums<Dim>>);
+  std::memset(static_cast<void*>(equation.cell_sums(b)), 0, cell_tile<Dim> * sizeof(CellSums<Dim>));
+  std::memset(static_cast<void*>(equation.vertex_tile(b)), 0, PressureGrid<Dim>::vertex_tile * sizeof(Lane));
   const Columns& columns = scene.particles.columns;
   WaterBatch<Dim> batch{.particles = scene.view(block),
                         .volume = columns.data(scene.particles.volume),

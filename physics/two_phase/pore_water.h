@@ -99,10 +99,6 @@ class PoreWater {
   Mobility<Dim> mobility(const PoreSpace& space) const;
 
  private:
-  /// Forces of `stress`, a column, along all axes to a force tile.
-  void scatter_isotropic(const Scene<Dim>& scene, const ParticleBlock<Dim>& block, const double* stress,
-                         Lane* force_tile) const;
-
   const WaterCase& water_;
   std::vector<PoreSpace> spaces_;
   const Materials<Dim>& materials_;

@@ -307,6 +307,27 @@ void expect_body_force(const Fixture<Dim>& f) {
       ASSERT_NEAR(tile.lanes.data()[i][k], dense.force[i][k], f.round_off() * 1e-9);
 }
 
+// Forces of a pressure: of its first normal stress, taken as a pressure, as the textbook sums V p grad N.
+template <int Dim>
+void expect_pressure(const Fixture<Dim>& f) {
+  const auto size = static_cast<std::size_t>(f.tile_size());
+  std::vector<std::array<double, 4>> force(size);
+  for (std::size_t p = 0; p < particles; ++p) {
+    const Stencil<Dim> s = f.stencil(p);
+    for (int n = 0; n < s.count; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      for (std::size_t a = 0; a < Dim; ++a)
+        force[static_cast<std::size_t>(f.place_in_tile(s.node[i]))][a + 1] +=
+            f.volume[p] * f.stress[0][p] * s.gradient[i][a];
+    }
+  }
+  LaneBuffer tile(size);
+  tile.fill(size, 7);
+  f.shape.scatter_pressure(f.view(), f.volume.data(), f.stress[0].data(), tile.lanes.data());
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t k = 0; k < 4; ++k) ASSERT_NEAR(tile.lanes.data()[i][k], force[i][k], f.round_off() * 1e-9);
+}
+
 /// A tile of motion lanes full of numbers, and what its nodes hold: component `a` of lane `lane`.
 template <int Dim>
 struct RandomMotion {
@@ -447,6 +468,11 @@ TEST_P(Transfer, GatherWithoutStrainGivesTheSame) {
 TEST_P(Transfer, BodyForceIsSharedLikeTheMass) {
   for_each_place<2>([](auto& f, bool) { expect_body_force<2>(f); });
   for_each_place<3>([](auto& f, bool) { expect_body_force<3>(f); });
+}
+
+TEST_P(Transfer, ForcesOfPressureEqualTheSumsOverTheStencil) {
+  for_each_place<2>([](auto& f, bool) { expect_pressure<2>(f); });
+  for_each_place<3>([](auto& f, bool) { expect_pressure<3>(f); });
 }
 
 TEST_P(Transfer, FieldEqualsTheSumsOverTheStencil) {
