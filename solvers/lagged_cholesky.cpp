@@ -138,10 +138,11 @@ void LaggedCholesky::use(Options::Ordering ordering, SparseCholesky cholesky) {
   const SymmetricPattern& pattern = cholesky_.pattern();
   rule_ = RenewalRule(counted_costs(cholesky_.statistics(), pattern.row.size()));
   rows_ = FullRows(pattern);
-  for (auto* vector : {&inverse_diagonal_, &r_, &z_, &p_, &q_})
+  for (auto* vector : {&inverse_diagonal_, &r_, &z_, &p_, &q_, &image_})
     vector->resize(static_cast<std::size_t>(pattern.size()));
   shares_.resize((r_.size() + share_size - 1) / share_size);
   sizes_.resize(shares_.size());
+  products_.resize(shares_.size());
   statistics_.unknowns = pattern.size();
   statistics_.matrix_nonzeros = static_cast<std::int64_t>(pattern.row.size());
   statistics_.factor_nonzeros = cholesky_.statistics().factor_nonzeros;
@@ -260,6 +261,9 @@ LaggedCholesky::Norms LaggedCholesky::measure_guess(std::span<const double> valu
     invert_diagonal(values, begin, end);
     set_residual(values, b, x, begin, end);
     sizes_[begin / share_size] = sums(b, begin, end);
+    sizes_[begin / share_size].positive =
+        std::all_of(inverse_diagonal_.begin() + static_cast<std::ptrdiff_t>(begin),
+                    inverse_diagonal_.begin() + static_cast<std::ptrdiff_t>(end), [](double d) { return d > 0; });
   });
   return added_up(sizes_);
 }
@@ -287,9 +291,8 @@ LaggedCholesky::Report LaggedCholesky::solve(std::span<const double> values, std
 LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> values, std::span<const double> b,
                                                     std::span<double> x, double largest_residual) {
   const Norms size = measure_guess(values, b, x);
-  // Not so if an entry of the diagonal is not positive: such a matrix is not positive definite.
-  const bool positive = std::ranges::all_of(inverse_diagonal_, [](double inverse) { return inverse > 0; });
-  if (!positive) factorize(values);  // which throws, and says why
+  // Such a matrix is not positive definite: factorizing it throws, and says why.
+  if (!std::ranges::all_of(sizes_, [](const Sums& share) { return share.positive; })) factorize(values);
   if (size.plain == 0) {
     std::fill(x.begin(), x.end(), 0.0);
     return {};
@@ -364,6 +367,25 @@ void LaggedCholesky::factorize(std::span<const double> values) {
   }
 }
 
+/// A z, and the products of z with r, with A z and, if there is one, with A p of the last direction p. Those make up p
+/// A p of the next direction, z + beta p, before that is formed: all else of an iteration is then one loop (in the
+/// spirit of Chronopoulos & Gear 1989, who drop the last product, which is known where z is orthogonal to the last
+/// residual; a factor in single precision makes that no more than nearly true).
+LaggedCholesky::Products LaggedCholesky::multiply_direction(std::span<const double> values, bool again) {
+  for_shares(z_.size(), [&](std::size_t begin, std::size_t end, std::size_t share) {
+    multiply(values, z_, image_, begin, end);
+    const auto part = [&](const std::vector<double>& v) { return std::span(v).subspan(begin, end - begin); };
+    products_[share] = {dot(part(z_), part(r_)), dot(part(z_), part(image_)), again ? dot(part(z_), part(q_)) : 0};
+  });
+  Products all;
+  for (const Products& share : products_) {
+    all.residual += share.residual;
+    all.image += share.image;
+    all.last_image += share.last_image;
+  }
+  return all;
+}
+
 /// Preconditioned conjugate gradients from the residual r_ of x, which is `distance` from the goal; adds to
 /// `iterations`. With a fresh factor this is iterative refinement, and goes on until round-off stops it; with a lagged
 /// one, until that is expected to be dearer than a factorization.
@@ -373,22 +395,23 @@ LaggedCholesky::Outcome LaggedCholesky::iterate(std::span<const double> values, 
   constexpr int most_refinements = 20;
   const bool fresh = preconditioner != Preconditioner::lagged;
   const double first = distance;
-  double true_distance = distance, last_rho = 0;
+  double true_distance = distance, last_rho = 0, curvature = 0;
   for (int i = 1; i <= (fresh ? most_refinements : options_.most_iterations); ++i) {
     if (preconditioner == Preconditioner::fresh_double)
       cholesky_.solve(r_, z_);
     else
       packed_.solve(r_, norms_.scaled, z_);
-    const double rho = dot(r_, z_), beta = last_rho > 0 ? rho / last_rho : 0;
-    for (std::size_t k = 0; k < p_.size(); ++k) p_[k] = z_[k] + beta * p_[k];
-    for_shares(p_.size(),
-               [&](std::size_t begin, std::size_t end, std::size_t) { multiply(values, p_, q_, begin, end); });
-    const double curvature = dot(p_, q_);
+    const bool again = last_rho > 0;  // a direction after another
+    const Products with_z = multiply_direction(values, again);
+    const double rho = with_z.residual, beta = again ? rho / last_rho : 0;
+    curvature = with_z.image + beta * (2 * with_z.last_image + beta * curvature);  // p A p
     if (!(rho > 0 && curvature > 0)) break;  // not positive definite, or at the end of what numbers resolve
     ++iterations;
     const double alpha = rho / curvature;
     norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
+        p_[k] = again ? z_[k] + beta * p_[k] : z_[k];
+        q_[k] = again ? image_[k] + beta * q_[k] : image_[k];
         x[k] += alpha * p_[k];
         r_[k] -= alpha * q_[k];
       }

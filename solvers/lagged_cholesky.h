@@ -134,6 +134,11 @@ class LaggedCholesky {
   /// What norms are made of, before the roots are taken.
   struct Sums {
     double plain = 0, scaled = 0, largest = 0;
+    bool positive = true;  ///< the diagonal, where that is asked for
+  };
+  /// Of z with r, A z, and A p of the last direction.
+  struct Products {
+    double residual = 0, image = 0, last_image = 0;
   };
 
   void multiply(std::span<const double> values, std::span<const double> x, std::span<double> y, std::size_t begin,
@@ -157,6 +162,7 @@ class LaggedCholesky {
   double start(std::span<const double> b, const Norms& size, std::span<double> x);
   double start_again(std::span<const double> values, std::span<const double> b, const Norms& size, std::span<double> x);
   void factorize(std::span<const double> values);
+  Products multiply_direction(std::span<const double> values, bool again);
   Outcome iterate(std::span<const double> values, std::span<const double> b, std::span<double> x, double distance,
                   Preconditioner preconditioner, int& iterations);
 
@@ -172,8 +178,9 @@ class LaggedCholesky {
   Norms round_off_;  // of what round-off adds to a residual
   Norms norms_;      // of r_
   FullRows rows_;
-  std::vector<Sums> shares_, sizes_;  // of r_ and of b, by share
-  std::vector<double> inverse_diagonal_, r_, z_, p_, q_;
+  std::vector<Sums> shares_, sizes_;                              // of r_ and of b, by share
+  std::vector<Products> products_;                                // by share
+  std::vector<double> inverse_diagonal_, r_, z_, p_, q_, image_;  // q = A p, image = A z
 };
 
 }  // namespace sluice

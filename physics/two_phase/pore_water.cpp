@@ -278,6 +278,7 @@ double PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleB
     batch.compliance = modulus > 0 ? 1 / modulus : 0;
     dissipated += add_water(batch, equation.cell_sums(b), equation.vertex_tile(b));
   }
+  equation.check_cover(b);
   return dissipated;
 }
 

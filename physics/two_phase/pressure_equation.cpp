@@ -59,23 +59,26 @@ void PressureEquation<Dim>::prepare(const Scene<Dim>& scene, const std::vector<c
   const std::size_t blocks = scene.blocks.particle_blocks().size();
   // Dry blocks keep their zeros.
   cell_sums_.assign(blocks * cell_tile<Dim>, {});
+  outside_set_.assign(blocks, 0);
   // One place more, which stays zero: where no further tile holds a part of a vertex.
   vertex_tiles_.resize(blocks * Grid::vertex_tile + 1);
   std::fill_n(vertex_tiles_.data(), blocks * Grid::vertex_tile + 1, Lane{});
   if (!grid_.empty()) grid_.locate(scene.blocks);
 }
 
+template <int Dim>
+void PressureEquation<Dim>::check_cover(std::size_t b) {
+  outside_set_[b] = 0;
+  if (grid_.empty() || !grid_.has_gaps(b)) return;
+  const std::int32_t* const cell = grid_.cells_of_tile(b);
+  for (std::size_t n = 0; n < cell_tile<Dim>; ++n)
+    if (cell[n] < 0 && cell_sums_[b * cell_tile<Dim> + n].volume > 0) outside_set_[b] = 1;
+}
+
 /// Whether all cells with water are in the set.
 template <int Dim>
-bool PressureEquation<Dim>::covered(const Scene<Dim>& scene) const {
-  if (grid_.empty()) return false;
-  for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b) {
-    if (!is_wet(b) || !grid_.has_gaps(b)) continue;
-    const std::int32_t* const cell = grid_.cells_of_tile(b);
-    for (std::size_t n = 0; n < cell_tile<Dim>; ++n)
-      if (cell[n] < 0 && cell_sums_[b * cell_tile<Dim> + n].volume > 0) return false;
-  }
-  return true;
+bool PressureEquation<Dim>::covered() const {
+  return !grid_.empty() && std::ranges::all_of(outside_set_, [](char outside) { return outside == 0; });
 }
 
 template <int Dim>
@@ -553,7 +556,7 @@ template <int Dim>
 void PressureEquation<Dim>::solve(Scene<Dim>& scene, const ExternalPressure<Dim>& outside, const PressureStep& step) {
   {
     const auto timing = scene.clock.time(Stage::pressure_assembly);
-    if (!covered(scene)) rebuild(scene);
+    if (!covered()) rebuild(scene);
     if (grid_.empty()) return;
     find_absorbing_faces(scene);
     open_.find(scene.obstacles, grid_, geometry_);
@@ -624,7 +627,7 @@ void PressureEquation<Dim>::extrapolate(const ExternalPressure<Dim>& outside, do
 
 template <int Dim>
 double PressureEquation<Dim>::solve_steady(Scene<Dim>& scene, const ExternalPressure<Dim>& outside) {
-  if (!covered(scene)) rebuild(scene);
+  if (!covered()) rebuild(scene);
   if (grid_.empty()) return 0;
   open_.find(scene.obstacles, grid_, geometry_);
   sum_up(scene.time);

@@ -49,6 +49,9 @@ class PressureEquation {
   /// Lanes {V, V p, V div v, V (v away from an obstacle)} of linear shape functions.
   Lane* vertex_tile(std::size_t block) { return vertex_tiles_.data() + block * PressureGrid<Dim>::vertex_tile; }
 
+  /// To be called when both are complete: finds out whether all cells with water are known. Blocks side by side.
+  void check_cover(std::size_t block);
+
   /// Throws CaseError if nothing holds the pressure of a closed region of incompressible water.
   void solve(Scene<Dim>& scene, const ExternalPressure<Dim>& outside, const PressureStep& step);
 
@@ -83,7 +86,7 @@ class PressureEquation {
     double pressure;  ///< at the surface [Pa]
   };
 
-  bool covered(const Scene<Dim>& scene) const;
+  bool covered() const;
   void rebuild(const Scene<Dim>& scene);
   void build(const std::vector<Index<Dim>>& wet_cells);
   CellSums<Dim> cell_sum(std::size_t c) const;
@@ -130,7 +133,8 @@ class PressureEquation {
   OpenCells<Dim> open_;
   std::vector<Index<Dim>> built_from_;  // the wet cells of that time
   LaggedCholesky solver_;
-  std::vector<char> wet_;  // by block
+  std::vector<char> wet_;          // by block
+  std::vector<char> outside_set_;  // by block: whether it has water in cells beyond the set
   std::vector<CellSums<Dim>> cell_sums_;
   LaneArray vertex_tiles_;
 
