@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel/multitarget.h"
 #include "core/parallel/parallel.h"
 
 namespace sluice {
@@ -14,42 +15,83 @@ constexpr std::size_t worth_dividing = 50'000;
 constexpr std::size_t enough_parts = 16;
 constexpr double largest_trunk = 0.08;
 
-/// y -= A x for `rows` x `width` A by columns. Four columns at a time, so that y is read and written less often.
-void subtract_product(const float* a, std::size_t rows, std::size_t width, const float* x, float* y) {
-  std::size_t j = 0;
-  for (; j + 4 <= width; j += 4, a += 4 * rows) {
-    const float *a0 = a, *a1 = a + rows, *a2 = a + 2 * rows, *a3 = a + 3 * rows;
-    const float x0 = x[j], x1 = x[j + 1], x2 = x[j + 2], x3 = x[j + 3];
-#pragma omp simd
-    for (std::size_t i = 0; i < rows; ++i) y[i] -= (a0[i] * x0 + a1[i] * x1) + (a2[i] * x2 + a3[i] * x3);
-  }
-  for (; j < width; ++j, a += rows) {
-    const float xj = x[j];
-#pragma omp simd
-    for (std::size_t i = 0; i < rows; ++i) y[i] -= a[i] * xj;
-  }
+/// Blocks of more columns are split: what is inverted stays small.
+constexpr std::size_t widest = 32;
+
+/// Eight numbers that are worked on together.
+using Eight = float __attribute__((vector_size(32), aligned(4), may_alias));
+constexpr std::size_t eight = 8;
+
+SLUICE_ALWAYS_INLINE const Eight& eight_at(const float* x) { return *reinterpret_cast<const Eight*>(x); }
+SLUICE_ALWAYS_INLINE Eight& eight_at(float* x) { return *reinterpret_cast<Eight*>(x); }
+
+std::size_t in_eights(std::size_t count) { return (count + eight - 1) / eight * eight; }
+
+/// N times eight rows of y = A x, for A by columns that are `height` apart.
+template <std::size_t N>
+SLUICE_ALWAYS_INLINE void rows_of_product(const float* a, std::size_t height, std::size_t width, const float* x,
+                                          float* y) {
+  Eight sum[N] = {};
+  for (std::size_t j = 0; j < width; ++j, a += height)
+    for (std::size_t n = 0; n < N; ++n) sum[n] += x[j] * eight_at(a + n * eight);
+  for (std::size_t n = 0; n < N; ++n) eight_at(y + n * eight) = sum[n];
 }
 
-/// x -= Aᵀ y, likewise.
-void subtract_transposed_product(const float* a, std::size_t rows, std::size_t width, const float* y, float* x) {
-  std::size_t j = 0;
-  for (; j + 4 <= width; j += 4, a += 4 * rows) {
-    const float *a0 = a, *a1 = a + rows, *a2 = a + 2 * rows, *a3 = a + 3 * rows;
-    float s0 = 0, s1 = 0, s2 = 0, s3 = 0;
-#pragma omp simd reduction(+ : s0, s1, s2, s3)
-    for (std::size_t i = 0; i < rows; ++i)
-      s0 += a0[i] * y[i], s1 += a1[i] * y[i], s2 += a2[i] * y[i], s3 += a3[i] * y[i];
-    x[j] -= s0, x[j + 1] -= s1, x[j + 2] -= s2, x[j + 3] -= s3;
+/// N columns from j on of x = A^T y, of which the rows before `from` are zero.
+template <std::size_t N>
+SLUICE_ALWAYS_INLINE void columns_of_product(const float* a, std::size_t height, std::size_t from, const float* y,
+                                             float* x) {
+  Eight sum[N] = {};
+  for (std::size_t i = from; i < height; i += eight) {
+    const Eight here = eight_at(y + i);
+    for (std::size_t n = 0; n < N; ++n) sum[n] += here * eight_at(a + n * height + i);
   }
-  for (; j < width; ++j, a += rows) {
-    float sum = 0;
-#pragma omp simd reduction(+ : sum)
-    for (std::size_t i = 0; i < rows; ++i) sum += a[i] * y[i];
-    x[j] -= sum;
-  }
+  for (std::size_t n = 0; n < N; ++n)
+    x[n] = ((sum[n][0] + sum[n][4]) + (sum[n][2] + sum[n][6])) + ((sum[n][1] + sum[n][5]) + (sum[n][3] + sum[n][7]));
 }
 
 }  // namespace
+
+namespace packed_factor {
+
+/// y = A x for a block, whose first rows are a lower triangle. (Multi-target functions need external linkage: the
+/// linker chooses among their clones.)
+SLUICE_MULTITARGET void multiply(const float* a, std::size_t height, std::size_t width, const float* x, float* y) {
+  constexpr std::size_t together = 4;
+  std::size_t i = 0;
+  for (; i + together * eight <= height; i += together * eight)
+    rows_of_product<together>(a + i, height, std::min(width, i + together * eight), x, y + i);
+  for (; i < height; i += eight) rows_of_product<1>(a + i, height, std::min(width, i + eight), x, y + i);
+}
+
+/// x = A^T y, likewise.
+SLUICE_MULTITARGET void multiply_transposed(const float* a, std::size_t height, std::size_t width, const float* y,
+                                            float* x) {
+  constexpr std::size_t together = 4;
+  std::size_t j = 0;
+  for (; j + together <= width; j += together)
+    columns_of_product<together>(a + j * height, height, j / eight * eight, y, x + j);
+  for (; j < width; ++j) columns_of_product<1>(a + j * height, height, j / eight * eight, y, x + j);
+}
+
+/// From [L; B] by columns, `height` apart, L a triangle of `width` columns: [L^-1; -B L^-1].
+SLUICE_MULTITARGET void eliminate(const double* block, std::size_t height, std::size_t width, double* eliminated) {
+  std::fill_n(eliminated, height * width, 0.0);
+  for (std::size_t j = width; j-- > 0;) {
+    // A column of the inverse: its rows below the diagonal follow from the columns that are there.
+    double* const column = eliminated + j * height;
+    const double pivot = 1 / block[j * height + j];
+    column[j] = pivot;
+    for (std::size_t k = j + 1; k < width; ++k) {
+      const double factor = -pivot * block[j * height + k];
+      const double* const inverse = eliminated + k * height;
+      for (std::size_t i = k; i < height; ++i) column[i] += factor * inverse[i];
+    }
+    for (std::size_t i = width; i < height; ++i) column[i] -= pivot * block[j * height + i];
+  }
+}
+
+}  // namespace packed_factor
 
 void PackedFactor::copy(const SparseCholesky& cholesky, std::span<const double> inverse_diagonal) {
   const SparseCholesky::DenseBlocks factor = cholesky.dense_blocks();
@@ -68,25 +110,35 @@ void PackedFactor::copy(const SparseCholesky& cholesky, std::span<const double> 
     const std::span<const int> rows =
         factor.row.subspan(at(factor.first_row, 0), at(factor.first_row, 1) - at(factor.first_row, 0));
     const double* const value = factor.value.data() + at(factor.first_value, 0);
-    blocks_.push_back({first, width, row_.size(), rows.size() - width, value_.size(), rows.size() - width});
-    most_rows = std::max(most_rows, rows.size() - width);
-    row_.insert(row_.end(), rows.begin() + static_cast<std::ptrdiff_t>(width), rows.end());
-    const auto scaled = [&](std::size_t i, std::size_t j) {
-      return value[i + j * rows.size()] * scale_[static_cast<std::size_t>(rows[i])];
-    };
-    value_.resize(value_.size() + rows.size() * width);
-    float* packed = value_.data() + blocks_.back().first_value;
-    for (std::size_t j = 0; j < width; ++j, packed += width) {
-      packed[j] = static_cast<float>(1 / scaled(j, j));
-      for (std::size_t i = 0; i < j; ++i) packed[i] = static_cast<float>(scaled(j, i));
-      for (std::size_t i = j + 1; i < width; ++i) packed[i] = static_cast<float>(scaled(i, j));
+    const std::size_t pieces = (width + widest - 1) / widest;
+    for (std::size_t piece = 0; piece < pieces; ++piece) {
+      const std::size_t begin = width * piece / pieces, end = width * (piece + 1) / pieces;
+      add_block(first + begin, end - begin, rows.subspan(begin), value + begin * rows.size() + begin, rows.size());
+      most_rows = std::max(most_rows, blocks_.back().rows);
     }
-    for (std::size_t j = 0; j < width; ++j)
-      for (std::size_t i = width; i < rows.size(); ++i) *packed++ = static_cast<float>(scaled(i, j));
   }
   x_.resize(order.size());
-  below_.resize(most_rows);
+  work_.resize(in_eights(widest + most_rows));
   divide();
+}
+
+/// Of columns of the factor, `stride` apart; `rows` begins with the columns themselves.
+void PackedFactor::add_block(std::size_t first, std::size_t width, std::span<const int> rows, const double* value,
+                             std::size_t stride) {
+  const std::size_t height = rows.size(), padded = in_eights(height);
+  blocks_.push_back({first, width, row_.size(), height - width, value_.size(), padded, height - width});
+  row_.insert(row_.end(), rows.begin() + static_cast<std::ptrdiff_t>(width), rows.end());
+  block_.resize(height * width), eliminated_.resize(height * width);
+  for (std::size_t j = 0; j < width; ++j)
+    for (std::size_t i = j; i < height; ++i)
+      block_[j * height + i] = value[j * stride + i] * scale_[static_cast<std::size_t>(rows[i])];
+  packed_factor::eliminate(block_.data(), height, width, eliminated_.data());
+  value_.resize(value_.size() + padded * width, 0.0f);
+  for (std::size_t j = 0; j < width; ++j) {
+    float* const column = value_.data() + blocks_.back().first_value + j * padded;
+    for (std::size_t i = 0; i < height; ++i) column[i] = static_cast<float>(eliminated_[j * height + i]);
+    std::fill(column + height, column + padded, 0.0f);
+  }
 }
 
 /// From the roots of the elimination tree down, the branch with most numbers gives way to the branches above its root,
@@ -142,7 +194,7 @@ void PackedFactor::divide() {
     }
   for (const std::size_t b : branches) {
     const std::size_t end = blocks_[b].first + blocks_[b].width;
-    parts_.push_back({first[b], b + 1, blocks_[first[b]].first, end, std::vector<float>(below_.size()),
+    parts_.push_back({first[b], b + 1, blocks_[first[b]].first, end, std::vector<float>(work_.size()),
                       std::vector<float>(trunk_columns_.size())});
     for (std::size_t k = first[b]; k <= b; ++k) {
       const auto rows = row_.begin() + static_cast<std::ptrdiff_t>(blocks_[k].first_row);
@@ -166,49 +218,40 @@ void PackedFactor::solve(std::span<const double> r, double size, std::span<doubl
     Part& part = parts_[p];
     for (std::size_t k = part.first_column; k < part.last_column; ++k) load(k, r, size);
     std::ranges::fill(part.above, 0.0f);
-    for (std::size_t b = part.first_block; b < part.last_block; ++b) forward(blocks_[b], part.below, part.above);
+    for (std::size_t b = part.first_block; b < part.last_block; ++b) forward(blocks_[b], part.work, part.above);
   });
   for (const std::size_t k : trunk_columns_) load(k, r, size);
   for (const Part& part : parts_)
     for (std::size_t i = 0; i < trunk_columns_.size(); ++i) x_[trunk_columns_[i]] += part.above[i];
-  for (const std::size_t b : trunk_) forward(blocks_[b], below_, nothing_above_);
-  for (auto b = trunk_.rbegin(); b != trunk_.rend(); ++b) backward(blocks_[*b], below_);
+  for (const std::size_t b : trunk_) forward(blocks_[b], work_, nothing_above_);
+  for (auto b = trunk_.rbegin(); b != trunk_.rend(); ++b) backward(blocks_[*b], work_);
   for (const std::size_t k : trunk_columns_) unload(k, size, z);
   parallel_for(parts_.size(), [&](std::size_t p) {
     Part& part = parts_[p];
-    for (std::size_t b = part.last_block; b-- > part.first_block;) backward(blocks_[b], part.below);
+    for (std::size_t b = part.last_block; b-- > part.first_block;) backward(blocks_[b], part.work);
     for (std::size_t k = part.first_column; k < part.last_column; ++k) unload(k, size, z);
   });
 }
 
-void PackedFactor::forward(const Block& block, std::vector<float>& below, std::vector<float>& above) {
+void PackedFactor::forward(const Block& block, std::vector<float>& work, std::vector<float>& above) {
   float* const x = x_.data() + block.first;
-  const float* column = value_.data() + block.first_value;
-  for (std::size_t j = 0; j < block.width; ++j, column += block.width) {
-    const float xj = x[j] *= column[j];
-#pragma omp simd
-    for (std::size_t i = j + 1; i < block.width; ++i) x[i] -= column[i] * xj;
-  }
-  std::fill_n(below.begin(), block.rows, 0.0f);
-  subtract_product(column, block.rows, block.width, x, below.data());
+  packed_factor::multiply(value_.data() + block.first_value, block.height, block.width, x, work.data());
+  std::copy_n(work.begin(), block.width, x);
+  const float* const below = work.data() + block.width;
   const int* const row = row_.data() + block.first_row;
   for (std::size_t i = 0; i < block.inner_rows; ++i) x_[static_cast<std::size_t>(row[i])] += below[i];
   for (std::size_t i = block.inner_rows; i < block.rows; ++i)
     above[place_in_trunk_[static_cast<std::size_t>(row[i])]] += below[i];
 }
 
-void PackedFactor::backward(const Block& block, std::vector<float>& below) {
+void PackedFactor::backward(const Block& block, std::vector<float>& work) {
   float* const x = x_.data() + block.first;
-  const float* column = value_.data() + block.first_value + block.width * block.width;
+  std::copy_n(x, block.width, work.begin());
   const int* const row = row_.data() + block.first_row;
-  for (std::size_t i = 0; i < block.rows; ++i) below[i] = x_[static_cast<std::size_t>(row[i])];
-  subtract_transposed_product(column, block.rows, block.width, below.data(), x);
-  for (std::size_t j = block.width; j-- > 0;) {
-    column -= block.width;
-    const float xj = x[j] *= column[j];
-#pragma omp simd
-    for (std::size_t i = 0; i < j; ++i) x[i] -= column[i] * xj;
-  }
+  for (std::size_t i = 0; i < block.rows; ++i) work[block.width + i] = x_[static_cast<std::size_t>(row[i])];
+  std::fill(work.begin() + static_cast<std::ptrdiff_t>(block.width + block.rows),
+            work.begin() + static_cast<std::ptrdiff_t>(block.height), 0.0f);
+  packed_factor::multiply_transposed(value_.data() + block.first_value, block.height, block.width, work.data(), x);
 }
 
 }  // namespace sluice
