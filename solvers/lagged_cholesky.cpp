@@ -17,12 +17,12 @@ namespace {
 using Options = LaggedCholeskyOptions;
 
 /// Operations of different kinds in one unit, nanoseconds of a machine of 2025; iterations are shared by threads, of
-/// which two are assumed (a factorization is not). On one core it is 0.8 and 3 for an iteration, within a fifth of what
+/// which two are assumed (a factorization is not). On one core it is 0.55 and 3 for an iteration, within a fifth of what
 /// `sluice_performance --solver` measured from 5600 to 360,000 unknowns in 2-D and 3-D. They weigh a factorization
 /// against an iteration; no result depends on them but by the choice when to factorize.
 RenewalRule::Costs counted_costs(const SparseCholeskyStatistics& factor, std::size_t matrix_nonzeros) {
   const double entries = static_cast<double>(factor.factor_nonzeros), nonzeros = static_cast<double>(matrix_nonzeros);
-  return {.renewal = 0.022 * factor.flops + 8 * entries + 70 * nonzeros, .iteration = 0.5 * entries + 2 * nonzeros};
+  return {.renewal = 0.022 * factor.flops + 12 * entries + 70 * nonzeros, .iteration = 0.35 * entries + 2 * nonzeros};
 }
 
 /// A number of solves to weigh against one factorization when orderings are compared.
