@@ -268,7 +268,8 @@ std::vector<typename Obstacles<Dim>::Hold> Obstacles<Dim>::holds_on(const Index<
 
 template <int Dim>
 void Obstacles<Dim>::impose(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, Lane* motion,
-                            Moment moment, const Beside& beside) {
+                            Moment moment, const Beside& beside, double kick) {
+  const double per_kick = kick > 0 ? 1 / kick : 0;
   for (const Contact& contact : contacts(nodes, block)) {
     const double mass = momentum[contact.node][0];
     if (!(mass > 0) || (!contact.inside && beside.area == nullptr)) continue;
@@ -292,7 +293,7 @@ void Obstacles<Dim>::impose(const NodeBlock<Dim>& nodes, std::size_t block, cons
       adhere_on_node<Dim>(touch, own);
     if (moment != Moment::kicked) continue;
     Vector<Dim>& force = force_[block * obstacles_.size() + static_cast<std::size_t>(contact.obstacle)];
-    for (int a = 0; a < Dim; ++a) force[a] += mass * (before[a] - own.v(a));
+    for (int a = 0; a < Dim; ++a) force[a] += per_kick * mass * (before[a] - own.v(a));
   }
 }
 
@@ -300,11 +301,8 @@ template <int Dim>
 void Obstacles<Dim>::fix_with_friction(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum,
                                        Lane* motion, const Beside& beside, double kick) {
   if (!any()) return;
+  impose(nodes, block, momentum, motion, Moment::kicked, beside, kick);
   Vector<Dim>* const force = force_.data() + block * obstacles_.size();
-  std::fill_n(force, obstacles_.size(), Vector<Dim>{});
-  impose(nodes, block, momentum, motion, Moment::kicked, beside);
-  for (std::size_t o = 0; o < obstacles_.size(); ++o)
-    for (double& component : force[o]) component = kick > 0 ? component / kick : 0;
   for (const Near& near : blocks_[block].near)
     for (int a = 0; a < Dim; ++a)  // what presses on a face of the grid is the face's
       if (!near.held[static_cast<std::size_t>(a)]) force[near.obstacle][a] -= near.traction[a];

@@ -31,10 +31,14 @@ class Obstacles {
 
   /// Velocities that are given whatever the forces are, as Faces::fix; nodes without mass are left alone.
   void fix(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, Lane* motion, Moment moment) {
-    if (any()) impose(nodes, block, momentum, motion, moment, {});
+    if (any()) impose(nodes, block, momentum, motion, moment, {}, 0);
   }
-  /// The same after forces have acted, as Faces::fix_with_friction. The impulse on each obstacle over `kick` is kept as
-  /// the force on it, in the place of the last one of this block.
+  /// Forgets the force on the obstacles from a block, for it to be found anew.
+  void forget_force(std::size_t block) {
+    if (any()) std::fill_n(force_.data() + block * obstacles_.size(), obstacles_.size(), Vector<Dim>{});
+  }
+  /// The same after forces have acted, as Faces::fix_with_friction. The impulse on each obstacle over `kick` is added
+  /// to the force on it.
   void fix_with_friction(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, Lane* motion,
                          const Beside& beside, double kick);
 
@@ -117,7 +121,7 @@ class Obstacles {
     std::int64_t near_version = -1;
   };
   void impose(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, Lane* motion, Moment moment,
-              const Beside& beside);
+              const Beside& beside, double kick);
   const std::vector<Contact>& contacts(const NodeBlock<Dim>& nodes, std::size_t block);
   void find(const NodeBlock<Dim>& nodes, std::size_t number, std::vector<Contact>& contacts) const;
   bool near(const Obstacle& obstacle, const NodeBlock<Dim>& nodes, const Vector<Dim>& margin) const;

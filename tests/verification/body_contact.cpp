@@ -168,6 +168,67 @@ TEST(StickingBlock, StaysWithoutFriction) {
   EXPECT_LT(std::abs(way(scene)), 0.01);
 }
 
+// ---- two blocks on an obstacle, one upon the other ----
+
+constexpr double on_obstacle = 0.3, on_slab = 0.1, two_blocks_until = 0.5;
+
+/// The slab slides on the obstacle and carries the block, which is less rough and runs ahead of it.
+SceneText two_blocks(const Scheme& scheme, bool contact) {
+  const double cosine = 1 / std::hypot(1.0, slope);
+  return {.grid = "{min: [0 m, 0 m], max: [16 m, 6 m], cell: 0.5 m}",
+          .material =
+              "{model: linear_elastic, density: 2000 kg/m3, youngs_modulus: 20 MPa, poisson_ratio: 0.2}\n"
+              "  block: {model: linear_elastic, density: 2000 kg/m3, youngs_modulus: 20 MPa, poisson_ratio: 0.2}",
+          .bodies =
+              "  - {material: soil, box: {min: [2 m, 2 m], max: [8 m, 3 m]}}\n"
+              "  - {material: block, box: {min: [3 m, 3 m], max: [5 m, 4 m]}}",
+          .gravity = fmt::format("[{} m/s2, {} m/s2]", g * slope * cosine, -g * cosine),
+          .initial_stress = "{method: elastic_equilibrium}",
+          .scheme = scheme,
+          .more = fmt::format("obstacles: {{ramp: {{box: {{min: [-1 m, -1 m], max: [17 m, 2 m]}}, friction: {}}}}}\n{}",
+                              on_obstacle,
+                              contact ? fmt::format("contact: {{materials: [block], friction: {}}}\n", on_slab) : "")};
+}
+
+class TwoBlocks : public ::testing::TestWithParam<Scheme> {};
+
+// Both as rigid ones: a = g cos (tan - mu) of the block, and of the slab, which has 3/4 of the mass, with the friction
+// of both its sides. The obstacle carries the weight of both, and their mean friction over the way.
+TEST_P(TwoBlocks, SlideUponEachOtherOnAnObstacle) {
+  const auto simulation = simulate(two_blocks(GetParam(), true));
+  double impulse[2] = {};
+  while (simulation->time() < two_blocks_until) {
+    const double dt = simulation->advance(two_blocks_until).dt;
+    for (const auto& [name, value] : simulation->step_numbers()) {
+      if (name == "ramp_force_x_N") impulse[0] += value * dt;
+      if (name == "ramp_force_y_N") impulse[1] += value * dt;
+    }
+  }
+  const double down = g / std::hypot(1.0, slope), half_square = 0.5 * two_blocks_until * two_blocks_until;
+  const double of_block = down * (slope - on_slab) * half_square;
+  const double of_slab = down * (slope + (0.25 * on_slab - on_obstacle) / 0.75) * half_square;
+  EXPECT_NEAR(body_of(simulation->particles(), "block").displacement(0), of_block, 0.02 * of_block);
+  EXPECT_NEAR(body_of(simulation->particles(), "soil").displacement(0), of_slab, 0.02 * of_block);
+  const double weight = (6 + 2) * 2000 * down * two_blocks_until;
+  EXPECT_NEAR(impulse[1], -weight, 0.02 * weight);
+  EXPECT_NEAR(impulse[0], on_obstacle * weight, 0.02 * weight);
+}
+
+INSTANTIATE_TEST_SUITE_P(Schemes, TwoBlocks,
+                         ::testing::Values(Scheme{"quadratic_bspline", "apic", "usl"},
+                                           Scheme{"cubic_bspline", "flip", "usl"}, Scheme{"ugimp", "tpic", "usl"},
+                                           Scheme{"cpdi2", "flip", "usl"}),
+                         scheme_name);
+
+// The negative control: with one field of nodes the block stays on the slab.
+TEST(TwoStickingBlocks, SlideAsOne) {
+  const auto simulation = simulate(two_blocks({}, false));
+  while (simulation->time() < two_blocks_until) simulation->advance(two_blocks_until);
+  const double together =
+      g / std::hypot(1.0, slope) * (slope - on_obstacle) * 0.5 * two_blocks_until * two_blocks_until;
+  EXPECT_NEAR(body_of(simulation->particles(), "block").displacement(0), together, 0.02 * together);
+}
+
 // ---- a slope that crosses the cells ----
 
 /// The same by vertical gravity, on a slope of 30 degrees whose surface the particles of both bodies follow in steps.
@@ -303,8 +364,9 @@ TEST(ContactRefused, SaysWhatAndWhere) {
   EXPECT_NE(refusal([](SceneText& s) { s.more += "surface_loads: [{pressure: 1 kPa}]\n"; }).find("`surface_loads`"),
             std::string::npos);
   EXPECT_NE(refusal([](SceneText& s) {
-              s.more += "obstacles: {wall: {box: {min: [8 m, 2 m], max: [9 m, 3 m]}}}\n";
-            }).find("`obstacles`"),
+              s.more +=
+                  "obstacles: {wall: {box: {min: [8 m, 2 m], max: [9 m, 3 m]}, normal: fixed, adhesion: 1 kPa}}\n";
+            }).find("`adhesion` of obstacles.wall"),
             std::string::npos);
 }
 
