@@ -17,8 +17,8 @@ namespace {
 using Options = LaggedCholeskyOptions;
 
 /// Operations of different kinds in one unit, nanoseconds of a machine of 2025; iterations are shared by threads, of
-/// which two are assumed (a factorization is not). On one core it is 0.55 and 3 for an iteration, within a fifth of what
-/// `sluice_performance --solver` measured from 5600 to 360,000 unknowns in 2-D and 3-D. They weigh a factorization
+/// which two are assumed (a factorization is not). On one core it is 0.55 and 3 for an iteration, within a fifth of
+/// what `sluice_performance --solver` measured from 5600 to 360,000 unknowns in 2-D and 3-D. They weigh a factorization
 /// against an iteration; no result depends on them but by the choice when to factorize.
 RenewalRule::Costs counted_costs(const SparseCholeskyStatistics& factor, std::size_t matrix_nonzeros) {
   const double entries = static_cast<double>(factor.factor_nonzeros), nonzeros = static_cast<double>(matrix_nonzeros);
