@@ -316,8 +316,9 @@ void PoreWater<Dim>::follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& 
     const double density = materials_[m].density();
     const std::uint32_t p = batch.begin;
     if (space.liquid) {
-      // Its volume is that of its mass: strains hold errors of the projection, which would add up.
-      for (std::uint32_t q = p; q < batch.end; ++q) volume[q] = mass[q] / density;
+      // Its volume is that of its mass: strains hold errors of the projection, which would add up. The sign stays, by
+      // which a point is found whose motion went bad.
+      for (std::uint32_t q = p; q < batch.end; ++q) volume[q] = std::copysign(mass[q] / density, volume[q]);
     } else if (space.saturated) {
       pore_water::follow(batch.end - p, density / (1 - space.porosity), water_.density, volume + p,
                          columns.data(solid_mass_) + p, columns.data(wet_) + p, columns.data(porosity_) + p, mass + p,
