@@ -17,12 +17,13 @@ namespace {
 using Options = LaggedCholeskyOptions;
 
 /// Operations of different kinds in one unit, nanoseconds of a machine of 2025; iterations are shared by threads, of
-/// which two are assumed (a factorization is not). On one core it is 0.55 and 3 for an iteration, within a fifth of
-/// what `sluice_performance --solver` measured from 5600 to 360,000 unknowns in 2-D and 3-D. They weigh a factorization
-/// against an iteration; no result depends on them but by the choice when to factorize.
+/// which two are assumed (a factorization is not). On one core it is 0.8 and 3 for an iteration, within a fifth of what
+/// `sluice_performance --solver` measured from 5600 to 360,000 unknowns in 2-D and 3-D, before the blocks of the packed
+/// factor were inverted: that has made an iteration cheaper and a factorization dearer, each by about a third. They
+/// weigh a factorization against an iteration; no result depends on them but by the choice when to factorize.
 RenewalRule::Costs counted_costs(const SparseCholeskyStatistics& factor, std::size_t matrix_nonzeros) {
   const double entries = static_cast<double>(factor.factor_nonzeros), nonzeros = static_cast<double>(matrix_nonzeros);
-  return {.renewal = 0.022 * factor.flops + 12 * entries + 70 * nonzeros, .iteration = 0.35 * entries + 2 * nonzeros};
+  return {.renewal = 0.022 * factor.flops + 8 * entries + 70 * nonzeros, .iteration = 0.5 * entries + 2 * nonzeros};
 }
 
 /// A number of solves to weigh against one factorization when orderings are compared.
@@ -367,9 +368,9 @@ void LaggedCholesky::factorize(std::span<const double> values) {
   }
 }
 
-/// A z, and the products of z with r, with A z and, if there is one, with A p of the last direction p. Those make up p
-/// A p of the next direction, z + beta p, before that is formed: all else of an iteration is then one loop (in the
-/// spirit of Chronopoulos & Gear 1989, who drop the last product, which is known where z is orthogonal to the last
+/// A z, and the products of z with r, with A z and, if there is one, with A p of the last direction p. They give the
+/// curvature along the next direction, z + beta p, before that is formed: all else of an iteration is then one loop (in
+/// the spirit of Chronopoulos & Gear 1989, who drop the last product, which is known where z is orthogonal to the last
 /// residual; a factor in single precision makes that no more than nearly true).
 LaggedCholesky::Products LaggedCholesky::multiply_direction(std::span<const double> values, bool again) {
   for_shares(z_.size(), [&](std::size_t begin, std::size_t end, std::size_t share) {

@@ -137,7 +137,6 @@ void PackedFactor::add_block(std::size_t first, std::size_t width, std::span<con
   for (std::size_t j = 0; j < width; ++j) {
     float* const column = value_.data() + blocks_.back().first_value + j * padded;
     for (std::size_t i = 0; i < height; ++i) column[i] = static_cast<float>(eliminated_[j * height + i]);
-    std::fill(column + height, column + padded, 0.0f);
   }
 }
 

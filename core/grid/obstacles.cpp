@@ -298,11 +298,10 @@ void Obstacles<Dim>::impose(const NodeBlock<Dim>& nodes, std::size_t block, cons
 }
 
 template <int Dim>
-void Obstacles<Dim>::fix_with_friction(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum,
-                                       Lane* motion, const Beside& beside, double kick) {
+void Obstacles<Dim>::start_force(std::size_t block) {
   if (!any()) return;
-  impose(nodes, block, momentum, motion, Moment::kicked, beside, kick);
   Vector<Dim>* const force = force_.data() + block * obstacles_.size();
+  std::fill_n(force, obstacles_.size(), Vector<Dim>{});
   for (const Near& near : blocks_[block].near)
     for (int a = 0; a < Dim; ++a)  // what presses on a face of the grid is the face's
       if (!near.held[static_cast<std::size_t>(a)]) force[near.obstacle][a] -= near.traction[a];

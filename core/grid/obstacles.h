@@ -33,14 +33,14 @@ class Obstacles {
   void fix(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, Lane* motion, Moment moment) {
     if (any()) impose(nodes, block, momentum, motion, moment, {}, 0);
   }
-  /// Forgets the force on the obstacles from a block, for it to be found anew.
-  void forget_force(std::size_t block) {
-    if (any()) std::fill_n(force_.data() + block * obstacles_.size(), obstacles_.size(), Vector<Dim>{});
-  }
   /// The same after forces have acted, as Faces::fix_with_friction. The impulse on each obstacle over `kick` is added
   /// to the force on it.
   void fix_with_friction(const NodeBlock<Dim>& nodes, std::size_t block, const Lane* momentum, Lane* motion,
-                         const Beside& beside, double kick);
+                         const Beside& beside, double kick) {
+    if (any()) impose(nodes, block, momentum, motion, Moment::kicked, beside, kick);
+  }
+  /// To be called before: the force on the obstacles from a block is what the pressure of a fluid there does.
+  void start_force(std::size_t block);
 
   /// A fluid in the pores does not pass the surfaces: its velocity relative to the material, in the motion of the nodes
   /// in the obstacles, loses what is normal to them, at rest or moving.

@@ -229,7 +229,7 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
                       nodes.motion(b));
     });
     if (scene.contact != nullptr) scene.contact->exchange(scene.blocks, b, kick, lightest);
-    scene.obstacles.forget_force(b);
+    scene.obstacles.start_force(b);
     for_fields(scene, b,
                [&](NodeFields<Dim>& nodes) { impose_boundaries(scene, nodes, b, kick, lightest, without_friction); });
   });
@@ -246,7 +246,7 @@ void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_fric
     scene.nodes.add_force(scene.blocks, b);
     press_on_obstacles(scene, at_obstacles, b, true);
     accelerate<Dim>(block, momentum, scene.nodes.force(b), kick, scene.gravity, lightest, scene.nodes.motion(b));
-    scene.obstacles.forget_force(b);
+    scene.obstacles.start_force(b);
     impose_boundaries(scene, scene.nodes, b, kick, lightest, without_friction);
   });
 }

@@ -39,6 +39,22 @@ SLUICE_ALWAYS_INLINE void stress_columns(const std::array<const double*, symmetr
   }
 }
 
+template <int Dim, class Shape>
+SLUICE_ALWAYS_INLINE void clear_tile(Lane* tile) {
+  std::memset(static_cast<void*>(tile), 0, sizeof(Lane) * power(tile_row<Dim, Shape>, Dim));
+}
+
+/// Calls body(first particle, number of particles, weights) for the chunks of a block, with what weigh() fills in.
+template <int Dim, class Shape, bool Distances, bool AffineWeights, class Body>
+SLUICE_ALWAYS_INLINE void for_chunks(const BlockParticles<Dim>& block, const Body& body) {
+  typename WeightsOf<Dim, Shape>::type w;
+  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
+    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
+    weigh<Dim, Shape, Distances, AffineWeights>(block, begin, count, w);
+    body(begin, count, w);
+  }
+}
+
 template <int Dim>
 SLUICE_ALWAYS_INLINE Lane mass_and_momentum(double mass, const std::array<const double*, Dim>& velocity,
                                             std::uint32_t p) {
@@ -61,42 +77,40 @@ SLUICE_MULTITARGET void scatter(const ScatterInput<Dim>& in, double impulse_dt, 
   constexpr bool momentum = What != ScatterWhat::force;
   constexpr bool impulse = What == ScatterWhat::momentum_and_impulse;
   constexpr bool force = What == ScatterWhat::force || What == ScatterWhat::momentum_and_force;
-  constexpr std::size_t tile_bytes = sizeof(Lane) * power(tile_row<Dim, Shape>, Dim);
-  if constexpr (momentum) std::memset(static_cast<void*>(tile), 0, tile_bytes);
-  if constexpr (force) std::memset(static_cast<void*>(force_tile), 0, tile_bytes);
+  if constexpr (momentum) clear_tile<Dim, Shape>(tile);
+  if constexpr (force) clear_tile<Dim, Shape>(force_tile);
 
-  typename WeightsOf<Dim, Shape>::type w;
-  for (std::uint32_t begin = in.particles.begin; begin < in.particles.end; begin += chunk_size) {
-    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, in.particles.end - begin));
-    weigh<Dim, Shape, Affine, false>(in.particles, begin, count, w);
-    for (int k = 0; k < count; ++k) {
-      const std::uint32_t p = begin + static_cast<std::uint32_t>(k);
-      Lane flux[Dim] = {}, slope[Dim] = {};
-      if constexpr (impulse || force)
-        stress_columns<Dim>(in.stress, -in.volume[p] * (impulse ? impulse_dt : 1), p, flux);
-      if constexpr (Affine) {
-        const double m = in.mass[p];
-        for (int b = 0; b < Dim; ++b) {
-          slope[b] = Lane{0, m * in.affine[static_cast<std::size_t>(b)][p],
-                          m * in.affine[static_cast<std::size_t>(Dim + b)][p], 0};
-          if constexpr (Dim == 3) slope[b][3] = m * in.affine[static_cast<std::size_t>(2 * Dim + b)][p];
+  for_chunks<Dim, Shape, Affine, false>(
+      in.particles, [&](std::uint32_t begin, int count, const auto& w) SLUICE_INLINE_LAMBDA {
+        for (int k = 0; k < count; ++k) {
+          const std::uint32_t p = begin + static_cast<std::uint32_t>(k);
+          Lane flux[Dim] = {}, slope[Dim] = {};
+          if constexpr (impulse || force)
+            stress_columns<Dim>(in.stress, -in.volume[p] * (impulse ? impulse_dt : 1), p, flux);
+          if constexpr (Affine) {
+            const double m = in.mass[p];
+            for (int b = 0; b < Dim; ++b) {
+              slope[b] = Lane{0, m * in.affine[static_cast<std::size_t>(b)][p],
+                              m * in.affine[static_cast<std::size_t>(Dim + b)][p], 0};
+              if constexpr (Dim == 3) slope[b][3] = m * in.affine[static_cast<std::size_t>(2 * Dim + b)][p];
+            }
+          }
+          if constexpr (Dim == 2 && momentum && force &&
+                        std::is_same_v<typename WeightsOf<Dim, Shape>::type, ChunkWeights<Dim, Shape>>) {
+            add_both_to_nodes<Shape, Affine>(w, k, mass_and_momentum<Dim>(in.mass[p], in.velocity, p), slope,
+                                             Body ? body_force<Dim>(in.body_force, p) : Lane{}, flux, tile, force_tile);
+            continue;
+          }
+          if constexpr (momentum)
+            add_to_nodes<Dim, Shape, Affine, impulse>(w, k, mass_and_momentum<Dim>(in.mass[p], in.velocity, p), slope,
+                                                      flux, tile);
+          if constexpr (force) {
+            Lane body{};
+            if constexpr (Body) body = body_force<Dim>(in.body_force, p);
+            add_to_nodes<Dim, Shape, false, true>(w, k, body, slope, flux, force_tile);
+          }
         }
-      }
-      if constexpr (Dim == 2 && momentum && force && std::is_same_v<decltype(w), ChunkWeights<Dim, Shape>>) {
-        add_both_to_nodes<Shape, Affine>(w, k, mass_and_momentum<Dim>(in.mass[p], in.velocity, p), slope,
-                                         Body ? body_force<Dim>(in.body_force, p) : Lane{}, flux, tile, force_tile);
-        continue;
-      }
-      if constexpr (momentum)
-        add_to_nodes<Dim, Shape, Affine, impulse>(w, k, mass_and_momentum<Dim>(in.mass[p], in.velocity, p), slope, flux,
-                                                  tile);
-      if constexpr (force) {
-        Lane body{};
-        if constexpr (Body) body = body_force<Dim>(in.body_force, p);
-        add_to_nodes<Dim, Shape, false, true>(w, k, body, slope, flux, force_tile);
-      }
-    }
-  }
+      });
 }
 
 /// What the particles of a chunk gathered: four doubles a particle and lane, to be read across particles.
@@ -178,15 +192,12 @@ SLUICE_ALWAYS_INLINE double write_strain(const ChunkGathered<Dim>& g, int count,
 template <int Dim, class Shape>
 SLUICE_MULTITARGET double gather_strain(const BlockParticles<Dim>& block, const Lane* motion_tile, double dt,
                                         const StrainIncrements<Dim>& out) {
-  typename WeightsOf<Dim, Shape>::type w;
   ChunkGathered<Dim> g;
   double largest = 0;
-  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
-    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
-    weigh<Dim, Shape, false, false>(block, begin, count, w);
+  for_chunks<Dim, Shape, false, false>(block, [&](std::uint32_t begin, int count, const auto& w) SLUICE_INLINE_LAMBDA {
     sum_chunk<Dim, Shape, false, true, false>(w, count, motion_tile, g);
     largest = std::max(largest, write_strain<Dim>(g, count, dt, begin - block.begin, out));
-  }
+  });
   return largest;
 }
 
@@ -249,24 +260,22 @@ template <int Dim, class Shape, AffineField Field, bool Strain>
 SLUICE_MULTITARGET MotionReport gather_motion(const BlockParticles<Dim>& block, const Lane* motion_tile,
                                               const MotionUpdate<Dim>& update) {
   constexpr bool affine_is_gradient = Field == AffineField::gradient, own_affine = Field == AffineField::moment;
-  typename WeightsOf<Dim, Shape>::type w;
   ChunkGathered<Dim> g;
   MotionReport report;
   double largest_strain = 0;
-  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
-    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
-    weigh<Dim, Shape, false, own_affine>(block, begin, count, w);
-    sum_chunk<Dim, Shape, true, Strain || affine_is_gradient || Shape::by_corners, own_affine>(w, count, motion_tile,
-                                                                                               g);
-    if constexpr (affine_is_gradient)
-      for (int a = 0; a < Dim; ++a) std::copy_n(g.gradient[a], count, g.affine[a]);
-    if constexpr (Strain)
-      largest_strain =
-          std::max(largest_strain, write_strain<Dim>(g, count, update.dt, begin - block.begin, *update.strain));
-    move<Dim, Field != AffineField::none>(g, block, begin, count, update, report);
-    if constexpr (Shape::by_corners)
-      if (update.domain[0] != nullptr) move_domains<Dim, Shape>(w, g, block, begin, count, motion_tile, update);
-  }
+  for_chunks<Dim, Shape, false, own_affine>(
+      block, [&](std::uint32_t begin, int count, const auto& w) SLUICE_INLINE_LAMBDA {
+        sum_chunk<Dim, Shape, true, Strain || affine_is_gradient || Shape::by_corners, own_affine>(w, count,
+                                                                                                   motion_tile, g);
+        if constexpr (affine_is_gradient)
+          for (int a = 0; a < Dim; ++a) std::copy_n(g.gradient[a], count, g.affine[a]);
+        if constexpr (Strain)
+          largest_strain =
+              std::max(largest_strain, write_strain<Dim>(g, count, update.dt, begin - block.begin, *update.strain));
+        move<Dim, Field != AffineField::none>(g, block, begin, count, update, report);
+        if constexpr (Shape::by_corners)
+          if (update.domain[0] != nullptr) move_domains<Dim, Shape>(w, g, block, begin, count, motion_tile, update);
+      });
   if constexpr (Strain) report.largest_strain_rate = largest_strain / update.dt;
   return report;
 }
@@ -276,18 +285,15 @@ SLUICE_MULTITARGET MotionReport gather_motion(const BlockParticles<Dim>& block, 
 template <int Dim, class Shape>
 SLUICE_MULTITARGET void map_again(const BlockParticles<Dim>& block, const double* mass, const Lane* motion_tile,
                                   Lane* tile) {
-  std::memset(static_cast<void*>(tile), 0, sizeof(Lane) * power(tile_row<Dim, Shape>, Dim));
-  typename WeightsOf<Dim, Shape>::type w;
-  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
-    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
-    weigh<Dim, Shape, false, false>(block, begin, count, w);
+  clear_tile<Dim, Shape>(tile);
+  for_chunks<Dim, Shape, false, false>(block, [&](std::uint32_t begin, int count, const auto& w) SLUICE_INLINE_LAMBDA {
     for (int k = 0; k < count; ++k) {
       const double m = mass[begin + static_cast<std::uint32_t>(k)];
       const Lane v = sum_nodes<Dim, Shape, true, false, false>(w, k, motion_tile).value[0];
       const Lane base = {m, m * v[0], m * v[1], Dim == 3 ? m * v[2] : 0};
       add_to_nodes<Dim, Shape, false, false>(w, k, base, nullptr, nullptr, tile);
     }
-  }
+  });
 }
 
 /// Writes component `component` of every lane of a chunk to a column.
@@ -299,27 +305,21 @@ SLUICE_ALWAYS_INLINE void write_component(const Lane* lanes, int component, int 
 
 template <int Dim, class Shape>
 SLUICE_MULTITARGET void gather_field(const BlockParticles<Dim>& block, const Lane* tile, const FieldGather<Dim>& out) {
-  typename WeightsOf<Dim, Shape>::type w;
   ChunkGathered<Dim> g;
-  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
-    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
-    weigh<Dim, Shape, false, false>(block, begin, count, w);
+  for_chunks<Dim, Shape, false, false>(block, [&](std::uint32_t begin, int count, const auto& w) SLUICE_INLINE_LAMBDA {
     sum_chunk<Dim, Shape, true, true, false>(w, count, tile, g);
     write_component(g.value[0], 0, count, out.value + begin);
     for (int a = 0; a < Dim; ++a) write_component(g.gradient[a], 0, count, out.gradient[a] + begin);
-  }
+  });
 }
 
 template <int Dim, class Shape>
 SLUICE_MULTITARGET void gather_divergence(const BlockParticles<Dim>& block, const Lane* motion_tile, double* divergence,
                                           const std::array<double*, Dim>& change) {
   constexpr int lanes = motion_lanes<Dim>, numbers = lanes * lane_width;
-  typename WeightsOf<Dim, Shape>::type w;
   alignas(64) Lane sums[chunk_size * lanes];
   const double* __restrict sum = reinterpret_cast<const double*>(sums);
-  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
-    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
-    weigh<Dim, Shape, false, false>(block, begin, count, w);
+  for_chunks<Dim, Shape, false, false>(block, [&](std::uint32_t begin, int count, const auto& w) SLUICE_INLINE_LAMBDA {
     for (int p = 0; p < count; ++p) sum_divergence<Dim, Shape>(w, p, motion_tile, sums + p * lanes);
     double* __restrict out = divergence + begin;
 #pragma omp simd
@@ -332,19 +332,16 @@ SLUICE_MULTITARGET void gather_divergence(const BlockParticles<Dim>& block, cons
 #pragma omp simd
       for (int p = 0; p < count; ++p) component[p] = sum[numbers * p + (Dim == 2 ? 2 : lane_width) + a];
     }
-  }
+  });
 }
 
 template <int Dim, class Shape>
 SLUICE_MULTITARGET void scatter_pressure(const BlockParticles<Dim>& block, const double* volume, const double* pressure,
                                          Lane* tile) {
-  std::memset(static_cast<void*>(tile), 0, sizeof(Lane) * power(tile_row<Dim, Shape>, Dim));
-  typename WeightsOf<Dim, Shape>::type w;
-  for (std::uint32_t begin = block.begin; begin < block.end; begin += chunk_size) {
-    const int count = static_cast<int>(std::min<std::uint32_t>(chunk_size, block.end - begin));
-    weigh<Dim, Shape, false, false>(block, begin, count, w);
+  clear_tile<Dim, Shape>(tile);
+  for_chunks<Dim, Shape, false, false>(block, [&](std::uint32_t begin, int count, const auto& w) SLUICE_INLINE_LAMBDA {
     for (int p = 0; p < count; ++p) add_gradient<Dim, Shape>(w, p, volume[begin + p] * pressure[begin + p], tile);
-  }
+  });
 }
 
 }  // namespace kernel

@@ -44,7 +44,7 @@ void check_contact(const Case& definition) {
   if (scheme.f_bar) refuse("`f_bar: true`", "cells that two bodies share would have one volume change");
   for (const ObstacleCase& obstacle : definition.obstacles)
     if (obstacle.surface.adhesion > 0)
-      refuse(fmt::format("`adhesion` of obstacles.{}", obstacle.name), "take free, roller, fixed or friction");
+      refuse(fmt::format("`adhesion` of obstacles.{}", obstacle.name), "take friction");
   if (definition.surface_loads) refuse("`surface_loads`", "load the bodies by weight or by faces that move");
   for (const auto& [name, face] : definition.faces)
     if (face.absorbing || face.adhesion > 0)

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <type_traits>
 
 #include "core/parallel/multitarget.h"
 
@@ -246,9 +244,8 @@ void PoreWater<Dim>::collect_at_rest(Scene<Dim>& scene, PressureEquation<Dim>& e
 template <int Dim>
 double PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
                                const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation) {
-  static_assert(std::is_trivially_copyable_v<CellSums<Dim>>);
-  std::memset(static_cast<void*>(equation.cell_sums(b)), 0, cell_tile<Dim> * sizeof(CellSums<Dim>));
-  std::memset(static_cast<void*>(equation.vertex_tile(b)), 0, PressureGrid<Dim>::vertex_tile * sizeof(Lane));
+  std::fill_n(equation.cell_sums(b), cell_tile<Dim>, CellSums<Dim>{});
+  std::fill_n(equation.vertex_tile(b), PressureGrid<Dim>::vertex_tile, Lane{});
   const Columns& columns = scene.particles.columns;
   WaterBatch<Dim> batch{.particles = scene.view(block),
                         .volume = columns.data(scene.particles.volume),
