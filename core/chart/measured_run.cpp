@@ -42,8 +42,9 @@ std::vector<std::string> words_of(const RunRequest& request) {
 }
 
 /// Becomes the run. Does not return.
-[[noreturn]] void become(const std::vector<std::string>& words, const fs::path& log, double cpu_limit) {
+[[noreturn]] void become(const std::vector<std::string>& words, const fs::path& log, double cpu_limit, pid_t study) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // a study that is killed leaves no run behind
+  if (getppid() != study) _exit(127);  // it was killed before this process could be told
   const auto seconds = static_cast<rlim_t>(std::ceil(cpu_limit));
   const rlimit limit{seconds, seconds + 5};
   setrlimit(RLIMIT_CPU, &limit);
@@ -122,9 +123,10 @@ RunReport measured_run(const RunRequest& request) {
   fs::create_directories(request.folder.parent_path());
   const fs::path log = request.folder.string() + ".log";
   fs::remove(request.folder / "summary.json");  // of an earlier run
+  const pid_t study = getpid();
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("a run could not be started: no process");
-  if (child == 0) become(words, log, request.cpu_limit);
+  if (child == 0) become(words, log, request.cpu_limit, study);
   rusage usage{};
   const int status = wait_for(child, usage);
   RunReport report;

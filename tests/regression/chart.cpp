@@ -1,7 +1,10 @@
 /// `sluice chart` as a user runs it: the shipped studies, tables and figures, failures as results, an interrupted
 /// study.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -100,6 +103,19 @@ TEST_F(Chart, goes_on_where_it_was) {
   const std::string whole = text_of(scratch_ / "out/runs.csv");
   ASSERT_EQ(chart({"--no-picture"}).code, exit_code::done);
   EXPECT_EQ(text_of(scratch_ / "out/runs.csv"), whole) << "nothing left to do";
+}
+
+// A second study in the same folder would write over the runs of the first. It waits a moment, then says so; when the
+// first has let go, even by being killed, it goes on.
+TEST_F(Chart, does_not_work_where_another_works) {
+  fs::create_directories(scratch_ / "out");
+  const int folder = open((scratch_ / "out").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(flock(folder, LOCK_EX | LOCK_NB), 0);
+  const Ending refused = chart({"--no-picture"});
+  EXPECT_EQ(refused.code, exit_code::run_failed);
+  EXPECT_TRUE(holds(refused.err, "another study works in out; wait until it ends, or take another --output"));
+  close(folder);
+  EXPECT_EQ(chart({"--no-picture"}).code, exit_code::done);
 }
 
 TEST_F(Chart, stops_in_order_when_interrupted) {
