@@ -43,7 +43,7 @@ std::vector<std::string> words_of(const RunRequest& request) {
 
 /// Becomes the run. Does not return.
 [[noreturn]] void become(const std::vector<std::string>& words, const fs::path& log, double cpu_limit, pid_t study) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a study that is killed leaves no run behind
+  prctl(PR_SET_PDEATHSIG, SIGKILL);    // a study that is killed leaves no run behind
   if (getppid() != study) _exit(127);  // it was killed before this process could be told
   const auto seconds = static_cast<rlim_t>(std::ceil(cpu_limit));
   const rlimit limit{seconds, seconds + 5};
