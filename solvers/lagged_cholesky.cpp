@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/parallel/multitarget.h"
 #include "core/parallel/parallel.h"
 #include "solvers/stopwatch.h"
 
@@ -31,30 +32,53 @@ constexpr int typical_solves = 10;
 /// An order that takes longer to find than another must save a tenth of the work: it is found anew for every pattern.
 constexpr double saving = 0.9;
 
-/// Loops over unknowns are cut in shares of this many, which threads may take; sums over a share are added up in the
-/// order of the shares, so that the bits do not depend on the number of threads.
-constexpr std::size_t share_size = 1024;
+/// Loops over unknowns are cut in shares of at most this many, which threads may take; sums over a share are added up
+/// in the order of the shares, so that the bits do not depend on the number of threads.
+constexpr std::size_t largest_share = 1024;
 /// Loops over fewer unknowns are not worth waking the other threads.
-constexpr std::size_t worth_sharing = 2 * share_size;
+constexpr std::size_t worth_sharing = 2 * largest_share;
+
+constexpr std::size_t rounded_up(std::size_t number, std::size_t unit) { return (number + unit - 1) / unit * unit; }
+
+/// How many unknowns a share has: the same in all but the last, in a number of shares that few threads divide evenly.
+std::size_t share_size(std::size_t count) {
+  constexpr std::size_t threads = 4;
+  const std::size_t shares = rounded_up(count / largest_share + 1, threads);
+  return rounded_up(count / shares + 1, SlicedRows::lanes);
+}
 
 /// Calls body(begin, end, number of the share).
 template <class Body>
 void for_shares(std::size_t count, const Body& body) {
+  const std::size_t size = share_size(count);
   if (count >= worth_sharing) {
-    parallel_shares(count, share_size, body);
+    parallel_shares(count, size, body);
     return;
   }
-  for (std::size_t s = 0; s * share_size < count; ++s) body(s * share_size, std::min(count, (s + 1) * share_size), s);
+  for (std::size_t s = 0; s * size < count; ++s) body(s * size, std::min(count, (s + 1) * size), s);
 }
 
 /// Four sums instead of one, which the processor can form side by side; the order is fixed, and so are the bits.
-double dot(std::span<const double> a, std::span<const double> b) {
+SLUICE_MULTITARGET double dot(const double* a, const double* b, std::size_t count) {
   std::array<double, 4> sum{};
-  const std::size_t blocks = a.size() / 4 * 4;
+  const std::size_t blocks = count / 4 * 4;
   for (std::size_t i = 0; i < blocks; i += 4)
     for (std::size_t lane = 0; lane < 4; ++lane) sum[lane] += a[i + lane] * b[i + lane];
-  for (std::size_t i = blocks; i < a.size(); ++i) sum[i - blocks] += a[i] * b[i];
+  for (std::size_t i = blocks; i < count; ++i) sum[i - blocks] += a[i] * b[i];
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/// The next direction, p = z + beta p with q = A p from A z, and a step along it.
+SLUICE_MULTITARGET void advance(std::size_t count, double beta, double alpha, const double* __restrict z,
+                                const double* __restrict image, double* __restrict p, double* __restrict q,
+                                double* __restrict x, double* __restrict r) {
+#pragma omp simd
+  for (std::size_t k = 0; k < count; ++k) {
+    p[k] = z[k] + beta * p[k];
+    q[k] = image[k] + beta * q[k];
+    x[k] += alpha * p[k];
+    r[k] -= alpha * q[k];
+  }
 }
 
 sluice::Ordering ordering_of_cholesky(Options::Ordering ordering) {
@@ -138,10 +162,11 @@ void LaggedCholesky::use(Options::Ordering ordering, SparseCholesky cholesky) {
   factorized_values_.clear();
   const SymmetricPattern& pattern = cholesky_.pattern();
   rule_ = RenewalRule(counted_costs(cholesky_.statistics(), pattern.row.size()));
-  rows_ = FullRows(pattern);
+  rows_ = SlicedRows(pattern);
   for (auto* vector : {&inverse_diagonal_, &r_, &z_, &p_, &q_, &image_})
     vector->resize(static_cast<std::size_t>(pattern.size()));
-  shares_.resize((r_.size() + share_size - 1) / share_size);
+  const std::size_t unit = share_size(r_.size());
+  shares_.resize((r_.size() + unit - 1) / unit);
   sizes_.resize(shares_.size());
   products_.resize(shares_.size());
   statistics_.unknowns = pattern.size();
@@ -150,40 +175,6 @@ void LaggedCholesky::use(Options::Ordering ordering, SparseCholesky cholesky) {
   statistics_.ordering =
       name_of(ordering == Options::Ordering::given && elimination_order_.empty() ? Options::Ordering::minimum_degree
                                                                                  : ordering);
-}
-
-/// Both triangles row by row: rows are products of their own, which threads can share.
-LaggedCholesky::FullRows::FullRows(const SymmetricPattern& pattern) : begin(1, 0) {
-  const auto n = static_cast<std::size_t>(pattern.size());
-  begin.resize(n + 1, 0);
-  const auto for_entries = [&](const auto& visit) {
-    for (std::size_t column = 0; column < n; ++column)
-      for (int k = pattern.column_begin[column]; k < pattern.column_begin[column + 1]; ++k) {
-        const auto row = static_cast<std::size_t>(pattern.row[static_cast<std::size_t>(k)]);
-        visit(row, column, k);
-        if (row != column) visit(column, row, k);
-      }
-  };
-  for_entries([&](std::size_t row, std::size_t, int) { ++begin[row + 1]; });
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  entry.resize(static_cast<std::size_t>(begin[n]));
-  std::vector<int> next(begin.begin(), begin.end() - 1);
-  for_entries([&](std::size_t row, std::size_t column, int slot) {
-    entry[static_cast<std::size_t>(next[row]++)] = {static_cast<int>(column), slot};
-  });
-}
-
-/// y = A x on a share of the rows.
-void LaggedCholesky::multiply(std::span<const double> values, std::span<const double> x, std::span<double> y,
-                              std::size_t begin, std::size_t end) const {
-  for (std::size_t i = begin; i < end; ++i) {
-    double sum = 0;
-    for (int k = rows_.begin[i]; k < rows_.begin[i + 1]; ++k) {
-      const auto [column, slot] = rows_.entry[static_cast<std::size_t>(k)];
-      sum += values[static_cast<std::size_t>(slot)] * x[static_cast<std::size_t>(column)];
-    }
-    y[i] = sum;
-  }
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -221,11 +212,11 @@ LaggedCholesky::Norms LaggedCholesky::added_up(const std::vector<Sums>& shares) 
   return {std::sqrt(all.plain), std::sqrt(all.scaled), all.largest};
 }
 
-/// Calls body(begin, end) for all shares of the unknowns, and returns the norms of `r` after it.
+/// Calls body(begin, end, share) for all shares of the unknowns, and returns the norms of `r` after it.
 template <class Body>
 LaggedCholesky::Norms LaggedCholesky::norms_after(std::span<const double> r, const Body& body) {
   for_shares(r.size(), [&](std::size_t begin, std::size_t end, std::size_t share) {
-    body(begin, end);
+    body(begin, end, share);
     shares_[share] = sums(r, begin, end);
   });
   return added_up(shares_);
@@ -241,28 +232,28 @@ bool LaggedCholesky::near_round_off() const {
 }
 
 /// r = b - A x on a share of the rows.
-void LaggedCholesky::set_residual(std::span<const double> values, std::span<const double> b, std::span<const double> x,
-                                  std::size_t begin, std::size_t end) {
-  multiply(values, x, r_, begin, end);
+void LaggedCholesky::set_residual(std::span<const double> b, std::span<const double> x, std::size_t begin,
+                                  std::size_t end) {
+  rows_.multiply(x, r_, begin, end);
   for (std::size_t i = begin; i < end; ++i) r_[i] = b[i] - r_[i];
 }
 
 /// r = b - A x; returns the distance.
-double LaggedCholesky::update_residual(std::span<const double> values, std::span<const double> b,
-                                       std::span<const double> x) {
-  norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end) { set_residual(values, b, x, begin, end); });
+double LaggedCholesky::update_residual(std::span<const double> b, std::span<const double> x) {
+  norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end, std::size_t) { set_residual(b, x, begin, end); });
   return distance();
 }
 
-/// What a solve begins with, in one pass: the diagonal inverted, the residual of the guess, and its norms. Returns
-/// those of b.
+/// What a solve begins with, in one pass: the rows, the diagonal inverted, the residual of the guess, and its norms.
+/// Returns those of b.
 LaggedCholesky::Norms LaggedCholesky::measure_guess(std::span<const double> values, std::span<const double> b,
                                                     std::span<const double> x) {
-  norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end) {
+  norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end, std::size_t share) {
     invert_diagonal(values, begin, end);
-    set_residual(values, b, x, begin, end);
-    sizes_[begin / share_size] = sums(b, begin, end);
-    sizes_[begin / share_size].positive =
+    rows_.set(values, begin, end);
+    set_residual(b, x, begin, end);
+    sizes_[share] = sums(b, begin, end);
+    sizes_[share].positive =
         std::all_of(inverse_diagonal_.begin() + static_cast<std::ptrdiff_t>(begin),
                     inverse_diagonal_.begin() + static_cast<std::ptrdiff_t>(end), [](double d) { return d > 0; });
   });
@@ -308,7 +299,7 @@ LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> valu
   if (!(distance <= 1) || options_.choice == Options::Choice::direct) {
     bool renew = factorized_values_.empty() || rule_.renew();
     if (!renew) {
-      const Outcome outcome = iterate(values, b, x, distance, Preconditioner::lagged, report.iterations);
+      const Outcome outcome = iterate(b, x, distance, Preconditioner::lagged, report.iterations);
       report.converged = outcome == Outcome::converged;
       renew = outcome == Outcome::given_up;
       if (!renew) rule_.aged(report.iterations);
@@ -317,12 +308,12 @@ LaggedCholesky::Report LaggedCholesky::solve_within(std::span<const double> valu
       const int before = report.iterations;
       factorize(values);
       report.factorized = true;
-      if (before > 0) distance = start_again(values, b, size, x);
+      if (before > 0) distance = start_again(b, size, x);
       for (const auto preconditioner : {Preconditioner::fresh, Preconditioner::fresh_double}) {
-        const Outcome outcome = iterate(values, b, x, distance, preconditioner, report.iterations);
+        const Outcome outcome = iterate(b, x, distance, preconditioner, report.iterations);
         report.converged = outcome == Outcome::converged;
         if (outcome != Outcome::given_up) break;
-        distance = start_again(values, b, size, x);
+        distance = start_again(b, size, x);
       }
       rule_.renewed(before, report.iterations - before);
     }
@@ -343,9 +334,8 @@ double LaggedCholesky::start(std::span<const double> b, const Norms& size, std::
   return distance();
 }
 
-double LaggedCholesky::start_again(std::span<const double> values, std::span<const double> b, const Norms& size,
-                                   std::span<double> x) {
-  update_residual(values, b, x);
+double LaggedCholesky::start_again(std::span<const double> b, const Norms& size, std::span<double> x) {
+  update_residual(b, x);
   return start(b, size, x);
 }
 
@@ -372,11 +362,13 @@ void LaggedCholesky::factorize(std::span<const double> values) {
 /// curvature along the next direction, z + beta p, before that is formed: all else of an iteration is then one loop (in
 /// the spirit of Chronopoulos & Gear 1989, who drop the last product, which is known where z is orthogonal to the last
 /// residual; a factor in single precision makes that no more than nearly true).
-LaggedCholesky::Products LaggedCholesky::multiply_direction(std::span<const double> values, bool again) {
+LaggedCholesky::Products LaggedCholesky::multiply_direction(bool again) {
   for_shares(z_.size(), [&](std::size_t begin, std::size_t end, std::size_t share) {
-    multiply(values, z_, image_, begin, end);
-    const auto part = [&](const std::vector<double>& v) { return std::span(v).subspan(begin, end - begin); };
-    products_[share] = {dot(part(z_), part(r_)), dot(part(z_), part(image_)), again ? dot(part(z_), part(q_)) : 0};
+    rows_.multiply(z_, image_, begin, end);
+    const auto with_z = [&](const std::vector<double>& v) {
+      return dot(z_.data() + begin, v.data() + begin, end - begin);
+    };
+    products_[share] = {with_z(r_), with_z(image_), again ? with_z(q_) : 0};
   });
   Products all;
   for (const Products& share : products_) {
@@ -390,9 +382,8 @@ LaggedCholesky::Products LaggedCholesky::multiply_direction(std::span<const doub
 /// Preconditioned conjugate gradients from the residual r_ of x, which is `distance` from the goal; adds to
 /// `iterations`. With a fresh factor this is iterative refinement, and goes on until round-off stops it; with a lagged
 /// one, until that is expected to be dearer than a factorization.
-LaggedCholesky::Outcome LaggedCholesky::iterate(std::span<const double> values, std::span<const double> b,
-                                                std::span<double> x, double distance, Preconditioner preconditioner,
-                                                int& iterations) {
+LaggedCholesky::Outcome LaggedCholesky::iterate(std::span<const double> b, std::span<double> x, double distance,
+                                                Preconditioner preconditioner, int& iterations) {
   constexpr int most_refinements = 20;
   const bool fresh = preconditioner != Preconditioner::lagged;
   const double first = distance;
@@ -403,26 +394,24 @@ LaggedCholesky::Outcome LaggedCholesky::iterate(std::span<const double> values, 
     else
       packed_.solve(r_, norms_.scaled, z_);
     const bool again = last_rho > 0;  // a direction after another
-    const Products with_z = multiply_direction(values, again);
+    const Products with_z = multiply_direction(again);
     const double rho = with_z.residual, beta = again ? rho / last_rho : 0;
     curvature = with_z.image + beta * (2 * with_z.last_image + beta * curvature);  // p A p
     if (!(rho > 0 && curvature > 0)) break;  // not positive definite, or at the end of what numbers resolve
     ++iterations;
     const double alpha = rho / curvature;
-    norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        p_[k] = again ? z_[k] + beta * p_[k] : z_[k];
-        q_[k] = again ? image_[k] + beta * q_[k] : image_[k];
-        x[k] += alpha * p_[k];
-        r_[k] -= alpha * q_[k];
-      }
+    norms_ = norms_after(r_, [&](std::size_t begin, std::size_t end, std::size_t) {
+      if (!again)
+        for (auto* last : {&p_, &q_}) std::fill_n(last->data() + begin, end - begin, 0.0);
+      advance(end - begin, beta, alpha, z_.data() + begin, image_.data() + begin, p_.data() + begin, q_.data() + begin,
+              x.data() + begin, r_.data() + begin);
     });
     last_rho = rho;
     distance = this->distance();
     if (distance <= 1) {
       if (i <= 2 && !near_round_off()) return Outcome::converged;
       // The residual carried along drifts away from b - A x by round-off.
-      distance = update_residual(values, b, x);
+      distance = update_residual(b, x);
       if (distance <= 1) return Outcome::converged;
       if (!(distance < true_distance / 2)) return Outcome::at_round_off;
       true_distance = distance, last_rho = 0;
@@ -430,7 +419,7 @@ LaggedCholesky::Outcome LaggedCholesky::iterate(std::span<const double> values, 
       return Outcome::given_up;
     }
   }
-  return update_residual(values, b, x) <= 1 ? Outcome::converged : Outcome::given_up;
+  return update_residual(b, x) <= 1 ? Outcome::converged : Outcome::given_up;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -31,6 +31,7 @@
 #include "solvers/nested_dissection.h"
 #include "solvers/packed_factor.h"
 #include "solvers/renewal_rule.h"
+#include "solvers/sliced_rows.h"
 #include "solvers/sparse_cholesky.h"
 
 namespace sluice {
@@ -121,16 +122,6 @@ class LaggedCholesky {
   double measure(SparseCholesky& candidate) const;
   void use(LaggedCholeskyOptions::Ordering ordering, SparseCholesky cholesky);
 
-  /// The matrix by whole rows: for each entry its column, and its place among the values.
-  struct FullRows {
-    struct Entry {
-      int column, slot;
-    };
-    std::vector<int> begin;
-    std::vector<Entry> entry;
-    FullRows() = default;
-    explicit FullRows(const SymmetricPattern& pattern);
-  };
   /// What norms are made of, before the roots are taken.
   struct Sums {
     double plain = 0, scaled = 0, largest = 0;
@@ -141,8 +132,6 @@ class LaggedCholesky {
     double residual = 0, image = 0, last_image = 0;
   };
 
-  void multiply(std::span<const double> values, std::span<const double> x, std::span<double> y, std::size_t begin,
-                std::size_t end) const;
   void invert_diagonal(std::span<const double> values, std::size_t begin, std::size_t end);
   Sums sums(std::span<const double> r, std::size_t begin, std::size_t end) const;
   template <class Body>
@@ -152,19 +141,18 @@ class LaggedCholesky {
   /// Whether what is allowed is so little that round-off counts.
   bool near_round_off() const;
   static Norms added_up(const std::vector<Sums>& shares);
-  void set_residual(std::span<const double> values, std::span<const double> b, std::span<const double> x,
-                    std::size_t begin, std::size_t end);
-  double update_residual(std::span<const double> values, std::span<const double> b, std::span<const double> x);
+  void set_residual(std::span<const double> b, std::span<const double> x, std::size_t begin, std::size_t end);
+  double update_residual(std::span<const double> b, std::span<const double> x);
 
   Report solve_within(std::span<const double> values, std::span<const double> b, std::span<double> x,
                       double largest_residual);
   Norms measure_guess(std::span<const double> values, std::span<const double> b, std::span<const double> x);
   double start(std::span<const double> b, const Norms& size, std::span<double> x);
-  double start_again(std::span<const double> values, std::span<const double> b, const Norms& size, std::span<double> x);
+  double start_again(std::span<const double> b, const Norms& size, std::span<double> x);
   void factorize(std::span<const double> values);
-  Products multiply_direction(std::span<const double> values, bool again);
-  Outcome iterate(std::span<const double> values, std::span<const double> b, std::span<double> x, double distance,
-                  Preconditioner preconditioner, int& iterations);
+  Products multiply_direction(bool again);
+  Outcome iterate(std::span<const double> b, std::span<double> x, double distance, Preconditioner preconditioner,
+                  int& iterations);
 
   LaggedCholeskyOptions options_;
   LaggedCholeskyStatistics statistics_;
@@ -174,10 +162,10 @@ class LaggedCholesky {
   PackedFactor packed_;
   std::vector<double> factorized_values_;  // empty if there is no factor
   RenewalRule rule_;
-  Norms allowed_;    // in the current solve
-  Norms round_off_;  // of what round-off adds to a residual
-  Norms norms_;      // of r_
-  FullRows rows_;
+  Norms allowed_;                                                 // in the current solve
+  Norms round_off_;                                               // of what round-off adds to a residual
+  Norms norms_;                                                   // of r_
+  SlicedRows rows_;                                               // of the current solve
   std::vector<Sums> shares_, sizes_;                              // of r_ and of b, by share
   std::vector<Products> products_;                                // by share
   std::vector<double> inverse_diagonal_, r_, z_, p_, q_, image_;  // q = A p, image = A z
