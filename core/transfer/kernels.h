@@ -304,16 +304,6 @@ SLUICE_ALWAYS_INLINE void write_component(const Lane* lanes, int component, int 
 }
 
 template <int Dim, class Shape>
-SLUICE_MULTITARGET void gather_field(const BlockParticles<Dim>& block, const Lane* tile, const FieldGather<Dim>& out) {
-  ChunkGathered<Dim> g;
-  for_chunks<Dim, Shape, false, false>(block, [&](std::uint32_t begin, int count, const auto& w) SLUICE_INLINE_LAMBDA {
-    sum_chunk<Dim, Shape, true, true, false>(w, count, tile, g);
-    write_component(g.value[0], 0, count, out.value + begin);
-    for (int a = 0; a < Dim; ++a) write_component(g.gradient[a], 0, count, out.gradient[a] + begin);
-  });
-}
-
-template <int Dim, class Shape>
 SLUICE_MULTITARGET void gather_divergence(const BlockParticles<Dim>& block, const Lane* motion_tile, double* divergence,
                                           const std::array<double*, Dim>& change) {
   constexpr int lanes = motion_lanes<Dim>, numbers = lanes * lane_width;

@@ -91,13 +91,6 @@ struct MotionUpdate {
       nullptr;  ///< out, indexed from 0 at the block's first particle; null: not wanted
 };
 
-/// A scalar field of the nodes at the particles of a block; pointers are to whole columns.
-template <int Dim>
-struct FieldGather {
-  double* value;
-  std::array<double*, Dim> gradient{};  ///< per metre
-};
-
 /// What the time loop wants to know of a block after its particles moved.
 struct MotionReport {
   double largest_speed_squared = 0;  ///< [m2/s2]
@@ -159,9 +152,6 @@ class ShapeKernels {
   /// Strain increments dt * sym grad v from the motion tile. Returns the largest absolute component, rotation included.
   virtual double gather_strain(const BlockParticles<Dim>& particles, const Lane* motion_tile, double dt,
                                const StrainIncrements<Dim>& out) const = 0;
-  /// The scalar field in component 0 of the first lane of each node; lanes stand where those of the motion do.
-  virtual void gather_field(const BlockParticles<Dim>& particles, const Lane* tile,
-                            const FieldGather<Dim>& out) const = 0;
   /// The divergence of the nodes' velocity [1/s] and the nodes' change of velocity [m/s] at the particles.
   virtual void gather_divergence(const BlockParticles<Dim>& particles, const Lane* motion_tile, double* divergence,
                                  const std::array<double*, Dim>& change) const = 0;

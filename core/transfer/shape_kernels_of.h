@@ -108,11 +108,6 @@ class ShapeKernelsOf final : public ShapeKernels<Dim> {
     return kernel::gather_strain<Dim, Shape>(particles, motion_tile, dt, out);
   }
 
-  void gather_field(const BlockParticles<Dim>& particles, const Lane* tile,
-                    const FieldGather<Dim>& out) const override {
-    kernel::gather_field<Dim, Shape>(particles, tile, out);
-  }
-
   void gather_divergence(const BlockParticles<Dim>& particles, const Lane* motion_tile, double* divergence,
                          const std::array<double*, Dim>& change) const override {
     kernel::gather_divergence<Dim, Shape>(particles, motion_tile, divergence, change);

@@ -141,13 +141,14 @@ double ExternalPressure<Dim>::at(const Vector<Dim>& x, double t) const {
 }
 
 template <int Dim>
-void ExternalPressure<Dim>::load(const Index<Dim>& first_cell, double t, Lane* tile, Of which) const {
+void ExternalPressure<Dim>::load(const Index<Dim>& first_cell, double t, VertexTile<Dim>& tile, Of which) const {
   constexpr int width = tile_width<Dim>(1);
-  for (int n = 0; n < power(width, Dim); ++n) {
+  for (std::size_t n = 0; n < tile.size(); ++n) {
     Index<Dim> place;
-    for (int a = 0, rest = n; a < Dim; ++a, rest /= width) place[a] = first_cell[a] - tile_margin + rest % width;
+    for (int a = 0, rest = static_cast<int>(n); a < Dim; ++a, rest /= width)
+      place[a] = first_cell[a] - tile_margin + rest % width;
     const Vector<Dim> x = grid_.vertex(grid_.wrapped(place));
-    tile[n * motion_lanes<Dim>] = Lane{which == Of::all ? at(x, t) : of_ponds(x, t), 0, 0, 0};
+    tile[n] = which == Of::all ? at(x, t) : of_ponds(x, t);
   }
 }
 

@@ -15,7 +15,7 @@
 #include "core/case/geometry.h"
 #include "core/case/schema.h"
 #include "core/grid/geometry.h"
-#include "core/grid/lane.h"
+#include "core/transfer/vertex_field.h"
 
 namespace sluice {
 
@@ -63,10 +63,9 @@ class ExternalPressure {
   /// The whole pressure, and that of the ponds alone, which stands in the pores of the surface, too [Pa].
   double at(const Vector<Dim>& x, double t) const;
   double of_ponds(const Vector<Dim>& x, double t) const;
-  /// The pressure at the vertices of the cells around a block, as a tile of motion lanes for linear functions:
-  /// particles then find it and its gradient between the vertices.
+  /// The pressure at the vertices of the cells around a block.
   enum class Of { all, ponds };
-  void load(const Index<Dim>& first_cell, double t, Lane* tile, Of which = Of::all) const;
+  void load(const Index<Dim>& first_cell, double t, VertexTile<Dim>& tile, Of which = Of::all) const;
   bool any_ponds() const { return !ponds_.empty(); }
 
  private:

@@ -8,18 +8,19 @@ void PressedParticles<Dim>::declare(Particles& particles) {
   using enum Role;
   pressure_ = columns.declare({"outside_pressure", "Pa", 1, derived, "Pressure from outside.", false});
   force_ = columns.declare({"body_force", "N", Dim, derived, "Force that goes with outside pressure.", false});
-  linear_ = shape_registry<Dim>().find("linear", {})();
+  active_ = true;
 }
 
 template <int Dim>
-void PressedParticles<Dim>::take(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile,
+void PressedParticles<Dim>::take(Scene<Dim>& scene, const ParticleBlock<Dim>& block,
                                  const ExternalPressure<Dim>& outside) {
   Columns& columns = scene.particles.columns;
   const double* volume = columns.data(scene.particles.volume);
-  FieldGather<Dim> out{columns.data(pressure_), {}};
+  FieldAtParticles<Dim> out{columns.data(pressure_), {}};
   for (int a = 0; a < Dim; ++a) out.gradient[a] = columns.data(force_, a);
+  VertexTile<Dim> tile;
   outside.load(block.first_cell, scene.time, tile);
-  linear_->gather_field(scene.view(block), tile, out);
+  interpolate<Dim>(tile, scene.view(block), out);
   for (int a = 0; a < Dim; ++a)
     for (std::uint32_t p = block.begin; p < block.end; ++p) out.gradient[a][p] *= -volume[p];
 }
@@ -28,8 +29,8 @@ template <int Dim>
 SkeletonLoads<Dim> PressedParticles<Dim>::at_rest(Scene<Dim>& scene, const ExternalPressure<Dim>& outside,
                                                   std::vector<Workspace<Dim>>& workspaces, double* push) {
   const double* here = pressure(scene.particles);
-  for_each_block(scene, workspaces, [&](std::size_t, const auto& block, Workspace<Dim>& work) {
-    take(scene, block, work.motion_tile.data(), outside);
+  for_each_block(scene, workspaces, [&](std::size_t, const auto& block, Workspace<Dim>&) {
+    take(scene, block, outside);
     for (std::uint32_t p = block.begin; p < block.end; ++p) push[p] -= here[p];
   });
   SkeletonLoads<Dim> loads{push, {}};

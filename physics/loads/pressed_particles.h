@@ -2,7 +2,6 @@
 /// Every physics module with loads on surfaces owns one. docs/theory.md, section 8.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "core/simulation/stages.h"
@@ -16,10 +15,10 @@ class PressedParticles {
  public:
   /// To be called only in a case with loads; without, `active` stays false and nothing is kept.
   void declare(Particles& particles);
-  bool active() const { return linear_ != nullptr; }
+  bool active() const { return active_; }
 
   /// P and -V grad P at the particles of a block, at the time of the scene; `tile` is working memory.
-  void take(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile, const ExternalPressure<Dim>& outside);
+  void take(Scene<Dim>& scene, const ParticleBlock<Dim>& block, const ExternalPressure<Dim>& outside);
 
   /// P as taken [Pa], a whole column.
   const double* pressure(const Particles& particles) const { return particles.columns.data(pressure_); }
@@ -58,7 +57,7 @@ class PressedParticles {
   };
   Sums sums(const Scene<Dim>& scene, const ParticleBlock<Dim>& block) const;
 
-  std::unique_ptr<ShapeKernels<Dim>> linear_;
+  bool active_ = false;
   ColumnId pressure_, force_;
   std::vector<BlockWork> blocks_;
   double work_ = 0;

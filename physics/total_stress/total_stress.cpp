@@ -154,16 +154,16 @@ void TotalStress<Dim>::step_usf(Scene<Dim>& scene, double dt) {
   sweep.over_particles([&](Items some) { scatter(scene, ScatterWhat::momentum, 0, some); });
   if (outside_.any())
     sweep.over_particles([&](Items some) {
-      const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
-        pressed_.take(scene, block, work.motion_tile.data(), outside_);
+      const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>&) {
+        pressed_.take(scene, block, outside_);
         pressed_.start_work(scene, b, block);
       };
       for_each_block(scene, stress_.workspaces(), body, some);
     });
   sweep.over_nodes([&](Items some) { velocity_from_momentum(scene, Moment::before, some); });
-  stress_.update(sweep, scene, scene.previous_dt, [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+  stress_.update(sweep, scene, scene.previous_dt, [&](std::size_t b, const auto& block, Workspace<Dim>&) {
     pressed_.add_work(scene, b, block);  // that of the volumes
-    scatter_forces(scene, b, block, work, ScatterWhat::force);
+    scatter_forces(scene, b, block, ScatterWhat::force);
   });
   if (scene.wants_area()) sweep.over_particles([&](Items some) { scatter_surface(scene, some); });
   sweep.over_nodes([&](Items some) { advance_nodes(scene, scene.kick(dt), false, true, some, loads_alone(scene)); });
@@ -216,8 +216,8 @@ void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim
   if (outside_.any()) {
     sweep.over_particles([this, &scene](Items some) {
       const auto timing = scene.clock.time(Stage::scatter);
-      const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
-        scatter_forces(scene, b, block, work, ScatterWhat::momentum_and_force);
+      const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>&) {
+        scatter_forces(scene, b, block, ScatterWhat::momentum_and_force);
       };
       for_each_block(scene, stress_.workspaces(), body, some);
     });
@@ -234,14 +234,14 @@ void TotalStress<Dim>::scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim
 /// Forces of stresses and loads, eq. (34), and momentum if `what` says so. The work of loads counts from here.
 template <int Dim>
 void TotalStress<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
-                                      Workspace<Dim>& work, ScatterWhat what) {
+                                      ScatterWhat what) {
   if (!outside_.any()) {
     scatter_block(scene, what, 0, b);
     return;
   }
   ScatterInput<Dim> in = scene.scatter_input(block);
   Columns& columns = scene.particles.columns;
-  pressed_.take(scene, block, work.motion_tile.data(), outside_);
+  pressed_.take(scene, block, outside_);
   const double* here = pressed_.pressure(scene.particles);
   for (int a = 0; a < Dim; ++a) {
     const double* own = in.stress[a];

@@ -45,8 +45,7 @@ class TotalStress final : public PhysicsModule<Dim> {
   /// Those at the present time.
   SkeletonLoads<Dim> loads_at_rest(Scene<Dim>& scene);
   void scatter_momentum_and_advance(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt);
-  void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
-                      ScatterWhat what);
+  void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, ScatterWhat what);
   void add_load_work(Sweep<Dim>& sweep, Scene<Dim>& scene);
   /// The forces of loads alone, or null where no face has friction.
   NodeFields<Dim>* loads_alone(const Scene<Dim>& scene) { return rough_under_load(scene) ? &wall_ : nullptr; }

@@ -8,9 +8,7 @@ namespace sluice {
 
 template <int Dim>
 ObstacleWater<Dim>::ObstacleWater(const Case& definition, const PoreWater<Dim>& pores)
-    : pores_(pores), active_(!definition.obstacles.empty()) {
-  if (active_) linear_ = shape_registry<Dim>().find("linear", {})();
-}
+    : pores_(pores), active_(!definition.obstacles.empty()) {}
 
 template <int Dim>
 void ObstacleWater<Dim>::declare(Particles& particles) {
@@ -42,15 +40,16 @@ void ObstacleWater<Dim>::begin_step(Scene<Dim>& scene) {
 // ---- the pressure on surfaces ----
 
 template <int Dim>
-void ObstacleWater<Dim>::take(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile, double share,
+void ObstacleWater<Dim>::take(Scene<Dim>& scene, const ParticleBlock<Dim>& block, double share,
                               const ExternalPressure<Dim>& outside) {
   Columns& columns = scene.particles.columns;
   const double* wet = columns.data(pores_.wet());
-  FieldGather<Dim> pond{columns.data(pressure_column_), {}};
+  FieldAtParticles<Dim> pond{columns.data(pressure_column_), {}};
   for (int a = 0; a < Dim; ++a) pond.gradient[a] = columns.data(slope_, a);
   if (outside.any_ponds()) {
+    VertexTile<Dim> tile;
     outside.load(block.first_cell, scene.time, tile, ExternalPressure<Dim>::Of::ponds);
-    linear_->gather_field(scene.view(block), tile, pond);
+    interpolate<Dim>(tile, scene.view(block), pond);
   }
   const auto set = [&](double* to, const double* from) {
     for (std::uint32_t p = block.begin; p < block.end; ++p)
@@ -63,15 +62,15 @@ void ObstacleWater<Dim>::take(Scene<Dim>& scene, const ParticleBlock<Dim>& block
 }
 
 template <int Dim>
-void ObstacleWater<Dim>::scatter(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
-                                 Workspace<Dim>& work, double share, const ExternalPressure<Dim>& outside) {
+void ObstacleWater<Dim>::scatter(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double share,
+                                 const ExternalPressure<Dim>& outside) {
   if (!active_) return;
   if (near_[b] == 0) {
     std::fill_n(pressure_.momentum_tile(b), pressure_.tile_size(), Lane{});
     std::fill_n(pressure_.force_tile(b), pressure_.tile_size(), Lane{});
     return;
   }
-  take(scene, block, work.motion_tile.data(), share, outside);
+  take(scene, block, share, outside);
   const Columns& columns = scene.particles.columns;
   ScatterInput<Dim> in = scene.scatter_input(block);
   in.mass = columns.data(volume_);
@@ -88,9 +87,8 @@ template <int Dim>
 void ObstacleWater<Dim>::add_at_rest(Scene<Dim>& scene, const ExternalPressure<Dim>& outside,
                                      std::vector<Workspace<Dim>>& workspaces, SkeletonLoads<Dim>& loads) {
   if (!active_) return;
-  for_each_block(scene, workspaces, [&](std::size_t, const auto& block, Workspace<Dim>& work) {
-    take(scene, block, work.motion_tile.data(), 1, outside);
-  });
+  for_each_block(scene, workspaces,
+                 [&](std::size_t, const auto& block, Workspace<Dim>&) { take(scene, block, 1, outside); });
   loads.on_obstacles = scene.particles.columns.data(pressure_column_);
   for (int a = 0; a < Dim; ++a) loads.slope[a] = scene.particles.columns.data(slope_, a);
 }

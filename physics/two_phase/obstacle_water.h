@@ -5,7 +5,6 @@
 /// section 9.14, eqs. (49a) and (49b).
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "core/simulation/stages.h"
@@ -29,7 +28,7 @@ class ObstacleWater {
 
   /// The pressure to the nodes around obstacles, for a block: the share `share` of that of its particles, less that of
   /// ponds.
-  void scatter(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work, double share,
+  void scatter(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double share,
                const ExternalPressure<Dim>& outside);
   NodeFields<Dim>* nodes() { return active_ ? &pressure_ : nullptr; }
 
@@ -47,12 +46,10 @@ class ObstacleWater {
                    SkeletonLoads<Dim>& loads);
 
  private:
-  void take(Scene<Dim>& scene, const ParticleBlock<Dim>& block, Lane* tile, double share,
-            const ExternalPressure<Dim>& outside);
+  void take(Scene<Dim>& scene, const ParticleBlock<Dim>& block, double share, const ExternalPressure<Dim>& outside);
 
   const PoreWater<Dim>& pores_;
   bool active_;
-  std::unique_ptr<ShapeKernels<Dim>> linear_;
   NodeFields<Dim> pressure_, parted_;
   std::vector<char> near_;  // by block of particles: obstacles are near
   ColumnId volume_, pressure_column_, slope_, flow_, flow_divergence_;

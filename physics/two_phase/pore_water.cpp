@@ -17,12 +17,44 @@ double kozeny_carman(double n) { return n * n * n / ((1 - n) * (1 - n)); }
 
 }  // namespace
 
+/// Loops over consecutive particles. (Multi-target functions need external linkage: the linker chooses among their
+/// clones.)
+namespace pore_water {
+
+/// sum = x + factor y
+SLUICE_MULTITARGET void add_scaled(std::size_t count, const double* __restrict x, double factor,
+                                   const double* __restrict y, double* __restrict sum) {
+#pragma omp simd
+  for (std::size_t p = 0; p < count; ++p) sum[p] = x[p] + factor * y[p];
+}
+
+/// Zero for `value`, which may be the pressure itself, where there is no water, or less pressure than `least`.
+SLUICE_MULTITARGET void clear_below(std::size_t count, const double* wet, const double* pressure, double least,
+                                    double* value) {
+#pragma omp simd
+  for (std::size_t p = 0; p < count; ++p) value[p] = wet[p] != 0 && pressure[p] >= least ? value[p] : 0;
+}
+
+/// Eq. (50) for particles of one material; `grains` and `water` are densities.
+SLUICE_MULTITARGET void follow(std::size_t count, double grains, double water, const double* __restrict volume,
+                               const double* __restrict solid, const double* __restrict wet,
+                               double* __restrict porosity, double* __restrict mass, double* __restrict inertia,
+                               bool inertia_follows) {
+  const double per_grains = 1 / grains;
+#pragma GCC ivdep
+  for (std::size_t p = 0; p < count; ++p) {
+    const double n = 1 - solid[p] * per_grains / volume[p];
+    porosity[p] = n;
+    mass[p] = solid[p] + wet[p] * n * water * volume[p];
+  }
+  if (inertia_follows) std::copy_n(mass, count, inertia);
+}
+
+}  // namespace pore_water
+
 template <int Dim>
 PoreWater<Dim>::PoreWater(const WaterCase& water, std::vector<PoreSpace> spaces, const Materials<Dim>& materials)
-    : water_(water),
-      spaces_(std::move(spaces)),
-      materials_(materials),
-      linear_(shape_registry<Dim>().find("linear", {})()) {
+    : water_(water), spaces_(std::move(spaces)), materials_(materials) {
   for (PoreSpace& space : spaces_)
     if (!space.liquid && space.saturated) space.per_initial_kozeny_carman = 1 / kozeny_carman(space.porosity);
 }
@@ -126,22 +158,22 @@ SkeletonLoads<Dim> PoreWater<Dim>::skeleton_loads(Scene<Dim>& scene, const Exter
 // ---- forces ----
 
 template <int Dim>
-void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
+void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                                     const ExternalPressure<Dim>& outside, ScatterWhat what) {
   Columns& columns = scene.particles.columns;
   ScatterInput<Dim> in = scene.scatter_input(block);
   const double* pressure = columns.data(pressure_);
   for (int a = 0; a < Dim; ++a) {
-    const double* effective = in.stress[a];
     double* total = columns.data(total_stress_, a);
-    for (std::uint32_t p = block.begin; p < block.end; ++p) total[p] = effective[p] - water_.increment * pressure[p];
+    pore_water::add_scaled(block.end - block.begin, in.stress[a] + block.begin, -water_.increment,
+                           pressure + block.begin, total + block.begin);
     in.stress[a] = total;
   }
   if (!outside.any()) {
     scene.shape->scatter(what, in, 0, scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
     return;
   }
-  pressed_.take(scene, block, tile, outside);
+  pressed_.take(scene, block, outside);
   const double* here = pressed_.pressure(scene.particles);
   for (int a = 0; a < Dim; ++a) {
     double* total = columns.data(total_stress_, a);
@@ -152,43 +184,43 @@ void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const Part
 
 template <int Dim>
 void PoreWater<Dim>::take_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
-                                   Workspace<Dim>& work, const PressureEquation<Dim>& equation) {
+                                   const PressureEquation<Dim>& equation) {
   Columns& columns = scene.particles.columns;
   double* pressure = columns.data(new_pressure_);
   const double* wet = columns.data(wet_);
-  FieldGather<Dim> out{pressure, {}};
+  FieldAtParticles<Dim> out{pressure, {}};
   for (int a = 0; a < Dim; ++a) out.gradient[a] = columns.data(pressure_gradient_, a);
-  equation.load(b, work.motion_tile.data());
-  linear_->gather_field(scene.view(block), work.motion_tile.data(), out);
+  VertexTile<Dim> tile;
+  equation.load(b, tile);
+  interpolate<Dim>(tile, scene.view(block), out);
   for (std::uint32_t k = block.first_batch; k < block.last_batch; ++k) {
     const Batch& batch = scene.blocks.batches()[k];
     // Free water tears rather than be pulled; the continuation beyond a ragged surface would pull.
     const bool liquid = spaces_[static_cast<std::size_t>(batch.material)].liquid;
     const double least = liquid ? 0 : -infinity;
-    for (std::uint32_t p = batch.begin; p < batch.end; ++p) {
-      if (wet[p] != 0 && pressure[p] >= least) continue;
-      pressure[p] = 0;
-      for (int a = 0; a < Dim; ++a) out.gradient[a][p] = 0;
-    }
+    for (int a = 0; a < Dim; ++a)
+      pore_water::clear_below(batch.end - batch.begin, wet + batch.begin, pressure + batch.begin, least,
+                              out.gradient[a] + batch.begin);
+    pore_water::clear_below(batch.end - batch.begin, wet + batch.begin, pressure + batch.begin, least,
+                            pressure + batch.begin);
   }
 }
 
 template <int Dim>
-void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
+void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                              const PressureEquation<Dim>& equation) {
   if (!equation.is_wet(b)) {
     std::fill_n(scene.nodes.force_tile(b), scene.nodes.tile_size(), Lane{});
     return;
   }
   Columns& columns = scene.particles.columns;
-  take_pressure(scene, b, block, work, equation);
+  take_pressure(scene, b, block, equation);
   const double* added = columns.data(new_pressure_);
   double* pressure = columns.data(pressure_);
   double* change = columns.data(total_stress_);
-  for (std::uint32_t p = block.begin; p < block.end; ++p) {
-    change[p] = added[p] - water_.increment * pressure[p];
-    pressure[p] = added[p];
-  }
+  pore_water::add_scaled(block.end - block.begin, added + block.begin, -water_.increment, pressure + block.begin,
+                         change + block.begin);
+  std::copy(added + block.begin, added + block.end, pressure + block.begin);
   scene.shape->scatter_pressure(scene.view(block), columns.data(scene.particles.volume), change,
                                 scene.nodes.force_tile(b));
 }
@@ -245,7 +277,7 @@ template <int Dim>
 double PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, double kick,
                                const std::array<const double*, Dim>& relative, PressureEquation<Dim>& equation) {
   std::fill_n(equation.cell_sums(b), cell_tile<Dim>, CellSums<Dim>{});
-  std::fill_n(equation.vertex_tile(b), PressureGrid<Dim>::vertex_tile, Lane{});
+  std::fill_n(equation.vertex_sums(b), vertex_tile<Dim>, Lane{});
   const Columns& columns = scene.particles.columns;
   WaterBatch<Dim> batch{.particles = scene.view(block),
                         .volume = columns.data(scene.particles.volume),
@@ -273,33 +305,13 @@ double PoreWater<Dim>::collect(Scene<Dim>& scene, std::size_t b, const ParticleB
     batch.liquid = spaces_[m].liquid;
     batch.mobility = mobility(spaces_[m]);
     batch.compliance = modulus > 0 ? 1 / modulus : 0;
-    dissipated += add_water(batch, equation.cell_sums(b), equation.vertex_tile(b));
+    dissipated += add_water(batch, equation.cell_sums(b), equation.vertex_sums(b));
   }
   equation.check_cover(b);
   return dissipated;
 }
 
 // ---- volumes ----
-
-namespace pore_water {
-
-/// Eq. (50) for consecutive particles of one material; `grains` and `water` are densities. (Multi-target functions need
-/// external linkage: the linker chooses among their clones.)
-SLUICE_MULTITARGET void follow(std::size_t count, double grains, double water, const double* __restrict volume,
-                               const double* __restrict solid, const double* __restrict wet,
-                               double* __restrict porosity, double* __restrict mass, double* __restrict inertia,
-                               bool inertia_follows) {
-  const double per_grains = 1 / grains;
-#pragma GCC ivdep
-  for (std::size_t p = 0; p < count; ++p) {
-    const double n = 1 - solid[p] * per_grains / volume[p];
-    porosity[p] = n;
-    mass[p] = solid[p] + wet[p] * n * water * volume[p];
-  }
-  if (inertia_follows) std::copy_n(mass, count, inertia);
-}
-
-}  // namespace pore_water
 
 template <int Dim>
 void PoreWater<Dim>::follow_volume(Scene<Dim>& scene, const ParticleBlock<Dim>& block) {

@@ -1,7 +1,6 @@
 /// PoreWater: the water that particles hold, and what they tell the nodes, cells and vertices of it.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "core/simulation/stages.h"
@@ -49,7 +48,7 @@ class PoreWater {
 
   /// Forces on the nodes from the total stress sigma' - beta p, from outside pressure and its gradient; `what` is
   /// `force` or `momentum_and_force`.
-  void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile,
+  void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                       const ExternalPressure<Dim>& outside, ScatterWhat what);
 
   /// Divergence and change of the predicted velocities of the nodes, for the particles of a block.
@@ -66,13 +65,13 @@ class PoreWater {
   void dry_above_zero_pressure(Scene<Dim>& scene);
 
   /// The new pressure from the vertices, and the forces of what it adds to the old one.
-  void correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
+  void correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                const PressureEquation<Dim>& equation);
   /// Forces of the new pressure alone, to the force tile of `nodes`; after `correct`.
   void scatter_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                         const ExternalPressure<Dim>& outside, NodeFields<Dim>& nodes);
   /// Pressure and its gradient at the particles, without forces: at the start.
-  void take_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work,
+  void take_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                      const PressureEquation<Dim>& equation);
 
   /// p -= dt (div v + n div r) K_w / n, eq. (55); `divergence` of v and r by particle [1/s].
@@ -102,7 +101,6 @@ class PoreWater {
   const WaterCase& water_;
   std::vector<PoreSpace> spaces_;
   const Materials<Dim>& materials_;
-  std::unique_ptr<ShapeKernels<Dim>> linear_;
 
   ColumnId pressure_, pressure_gradient_, porosity_, solid_mass_, inertia_, wet_;  // state
   ColumnId divergence_, acceleration_, new_pressure_, total_stress_, zero_;        // derived

@@ -61,8 +61,8 @@ void PressureEquation<Dim>::prepare(const Scene<Dim>& scene, const std::vector<c
   cell_sums_.assign(blocks * cell_tile<Dim>, {});
   outside_set_.assign(blocks, 0);
   // One place more, which stays zero: where no further tile holds a part of a vertex.
-  vertex_tiles_.resize(blocks * Grid::vertex_tile + 1);
-  std::fill_n(vertex_tiles_.data(), blocks * Grid::vertex_tile + 1, Lane{});
+  vertex_tiles_.resize(blocks * vertex_tile<Dim> + 1);
+  std::fill_n(vertex_tiles_.data(), blocks * vertex_tile<Dim> + 1, Lane{});
   if (!grid_.empty()) grid_.locate(scene.blocks);
 }
 
@@ -637,14 +637,14 @@ double PressureEquation<Dim>::solve_steady(Scene<Dim>& scene, const ExternalPres
 }
 
 template <int Dim>
-void PressureEquation<Dim>::load(std::size_t block, Lane* tile) const {
+void PressureEquation<Dim>::load(std::size_t block, VertexTile<Dim>& tile) const {
   if (grid_.empty()) {
-    std::fill_n(tile, Grid::vertex_tile * motion_lanes<Dim>, Lane{});
+    tile.fill(0);
     return;
   }
   const std::int32_t* const vertex = grid_.vertices_of_tile(block);
-  for (std::size_t n = 0; n < Grid::vertex_tile; ++n)
-    tile[n * motion_lanes<Dim>] = Lane{vertex[n] >= 0 ? pressure_[static_cast<std::size_t>(vertex[n])] : 0, 0, 0, 0};
+  for (std::size_t n = 0; n < tile.size(); ++n)
+    tile[n] = vertex[n] >= 0 ? pressure_[static_cast<std::size_t>(vertex[n])] : 0;
 }
 
 template class PressureEquation<2>;

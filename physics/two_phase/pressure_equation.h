@@ -3,7 +3,7 @@
 ///
 /// A step uses it so:
 ///   prepare(scene)                                  which cells and vertices take part
-///   collect: in parallel over blocks, each fills its cell_sums(b) and vertex_tile(b)
+///   collect: in parallel over blocks, each fills its cell_sums(b) and vertex_sums(b)
 ///   solve(...)                                      assembles, imposes boundaries, solves, extrapolates
 ///   load(b, tile)                                   the new pressure, for a gather with linear shape functions
 #pragma once
@@ -47,7 +47,7 @@ class PressureEquation {
 
   CellSums<Dim>* cell_sums(std::size_t block) { return cell_sums_.data() + block * cell_tile<Dim>; }
   /// Lanes {V, V p, V div v, V (v away from an obstacle)} of linear shape functions.
-  Lane* vertex_tile(std::size_t block) { return vertex_tiles_.data() + block * PressureGrid<Dim>::vertex_tile; }
+  Lane* vertex_sums(std::size_t block) { return vertex_tiles_.data() + block * vertex_tile<Dim>; }
 
   /// To be called when both are complete: finds out whether all cells with water are known. Blocks side by side.
   void check_cover(std::size_t block);
@@ -58,8 +58,8 @@ class PressureEquation {
   /// The pressure of steady seepage, from sums collected at rest; returns the discharge [m3/s].
   double solve_steady(Scene<Dim>& scene, const ExternalPressure<Dim>& outside);
 
-  /// Fills a tile of motion lanes with the pressure.
-  void load(std::size_t block, Lane* tile) const;
+  /// The pressure at the vertices around a block.
+  void load(std::size_t block, VertexTile<Dim>& tile) const;
 
   /// Of the last step.
   const LaggedCholesky::Report& report() const { return report_; }

@@ -196,8 +196,8 @@ void PressureGrid<Dim>::locate(const Blocks<Dim>& blocks) {
     }
   };
   link(cell_numbers_, cell_tile_width<Dim>, cell_tile<Dim>, cells_.size(), tile_cells_, cell_entries_);
-  link(vertex_numbers_, tile_width<Dim>(1), vertex_tile, vertices_.size(), tile_vertices_, vertex_entries_);
-  const auto behind = static_cast<std::int32_t>(blocks.particle_blocks().size() * vertex_tile);
+  link(vertex_numbers_, tile_width<Dim>(1), vertex_tile<Dim>, vertices_.size(), tile_vertices_, vertex_entries_);
+  const auto behind = static_cast<std::int32_t>(blocks.particle_blocks().size() * vertex_tile<Dim>);
   for (Entries& own : vertex_entries_) std::ranges::replace(own, -1, behind);
   has_gaps_.resize(blocks.particle_blocks().size());
   for (std::size_t b = 0; b < has_gaps_.size(); ++b) {

@@ -11,6 +11,7 @@
 #include "core/grid/blocks.h"
 #include "core/grid/geometry.h"
 #include "core/transfer/cell_tile.h"
+#include "core/transfer/vertex_field.h"
 #include "solvers/lagged_cholesky.h"
 
 namespace sluice {
@@ -21,7 +22,6 @@ class PressureGrid {
   static constexpr int corners = power(2, Dim);  ///< of a cell; bit a of a corner's number: upper along axis a
   static constexpr int stencil = power(3, Dim);  ///< a vertex and those around it, first axis fastest
   static constexpr int centre = stencil / 2;
-  static constexpr std::size_t vertex_tile = power(tile_width<Dim>(1), Dim);
 
   struct Vertex {
     Index<Dim> place;
@@ -59,7 +59,9 @@ class PressureGrid {
   const Entries& vertex_entries(std::size_t vertex) const { return vertex_entries_[vertex]; }
   /// By block and place in its tile: the cell or vertex there; -1 if it is not in the set.
   const std::int32_t* cells_of_tile(std::size_t block) const { return tile_cells_.data() + block * cell_tile<Dim>; }
-  const std::int32_t* vertices_of_tile(std::size_t block) const { return tile_vertices_.data() + block * vertex_tile; }
+  const std::int32_t* vertices_of_tile(std::size_t block) const {
+    return tile_vertices_.data() + block * vertex_tile<Dim>;
+  }
 
   /// Whether the tile of a block has cells beyond the set.
   bool has_gaps(std::size_t block) const { return has_gaps_[block] != 0; }

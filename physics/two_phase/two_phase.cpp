@@ -105,8 +105,8 @@ void TwoPhase<Dim>::start_seepage(Scene<Dim>& scene) {
   pressure_.prepare(scene, pores_.wet_blocks(scene));
   pores_.collect_at_rest(scene, pressure_);
   discharge_ = pressure_.solve_steady(scene, outside_);
-  for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
-    pores_.take_pressure(scene, b, block, work, pressure_);
+  for_each_block(scene, stress_.workspaces(), [&](std::size_t b, const auto& block, Workspace<Dim>&) {
+    pores_.take_pressure(scene, b, block, pressure_);
   });
   pores_.dry_above_zero_pressure(scene);
 }
@@ -160,20 +160,20 @@ void TwoPhase<Dim>::step_explicit(Scene<Dim>& scene, double dt) {
 template <int Dim>
 void TwoPhase<Dim>::predict(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
   const bool stress_first = stress_.timing() == StressTiming::usf;
-  const auto forces = [this, &scene](std::size_t b, const auto& block, Workspace<Dim>& work, ScatterWhat what) {
-    pores_.scatter_forces(scene, b, block, work.motion_tile.data(), outside_, what);
-    at_obstacles_.scatter(scene, b, block, work, water_.increment, outside_);
+  const auto forces = [this, &scene](std::size_t b, const auto& block, ScatterWhat what) {
+    pores_.scatter_forces(scene, b, block, outside_, what);
+    at_obstacles_.scatter(scene, b, block, water_.increment, outside_);
     pores_.pressed().start_work(scene, b, block);
   };
   sweep.over_particles([this, &scene, forces, stress_first](Items some) {
     const auto timing = scene.clock.time(Stage::scatter);
-    const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
+    const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>&) {
       if (!stress_first) {
-        forces(b, block, work, ScatterWhat::momentum_and_force);
+        forces(b, block, ScatterWhat::momentum_and_force);
         return;
       }
       scene.shape->scatter(ScatterWhat::momentum, scene.scatter_input(block), 0, scene.nodes.momentum_tile(b), nullptr);
-      if (outside_.any()) pores_.pressed().take(scene, block, work.motion_tile.data(), outside_);
+      if (outside_.any()) pores_.pressed().take(scene, block, outside_);
       pores_.pressed().start_work(scene, b, block);
     };
     for_each_block(scene, stress_.workspaces(), body, some);
@@ -182,9 +182,9 @@ void TwoPhase<Dim>::predict(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
   if (scene.wants_area()) sweep.over_particles([&scene](Items some) { scatter_surface(scene, some); });
   if (stress_first) {
     sweep.over_nodes([&scene](Items some) { velocity_from_momentum(scene, Moment::before, some); });
-    stress_.update(sweep, scene, scene.previous_dt, [=, this, &scene](std::size_t b, const auto& block, auto& work) {
+    stress_.update(sweep, scene, scene.previous_dt, [=, this, &scene](std::size_t b, const auto& block, auto&) {
       pores_.pressed().add_work(scene, b, block);
-      forces(b, block, work, ScatterWhat::force);
+      forces(b, block, ScatterWhat::force);
     });
   }
   sweep.over_nodes([this, &scene, kick, stress_first](Items some) {
@@ -205,7 +205,7 @@ void TwoPhase<Dim>::collect(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
       pores_.take_prediction(scene, b, block, work);
       at_obstacles_.take_divergence(scene, b, block, work);
       dissipation_[b] = pores_.collect(scene, b, block, kick, relative, pressure_);
-      at_obstacles_.add_flow(scene, b, block, pressure_.vertex_tile(b));
+      at_obstacles_.add_flow(scene, b, block, pressure_.vertex_sums(b));
     };
     for_each_block(scene, stress_.workspaces(), body, some);
   });
@@ -218,9 +218,9 @@ void TwoPhase<Dim>::correct(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
   if (friction) wall_.resize(scene.blocks, scene.shape->reach());
   sweep.over_particles([this, &scene, friction](Items some) {
     const auto timing = scene.clock.time(Stage::scatter);
-    const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>& work) {
-      pores_.correct(scene, b, block, work, pressure_);
-      at_obstacles_.scatter(scene, b, block, work, 1, outside_);
+    const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>&) {
+      pores_.correct(scene, b, block, pressure_);
+      at_obstacles_.scatter(scene, b, block, 1, outside_);
       if (friction) pores_.scatter_pressure(scene, b, block, outside_, wall_);
     };
     for_each_block(scene, stress_.workspaces(), body, some);

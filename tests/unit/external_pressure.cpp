@@ -77,12 +77,10 @@ TEST(ExternalPressure, OfAPondIsHydrostaticBelowItsLevelAndNothingAbove) {
 // is linear in each cell. Tolerance: round-off of 1e5 Pa over cells of 0.5 m.
 TEST(ExternalPressure, IsLoadedAtTheVerticesAroundABlock) {
   const auto field = ponds({{Table::constant(9.5), {}, 0}});
-  const auto linear = shape_registry<2>().find("linear", {})();
   const GridGeometry<2> g = grid();
   for (const Index<2> first_cell : {Index<2>{0, 0}, Index<2>{8, 16}}) {
-    LaneArray tile;
-    tile.resize(static_cast<std::size_t>(power(tile_width<2>(1), 2)));
-    field.load(first_cell, 0, tile.data());
+    VertexTile<2> tile;
+    field.load(first_cell, 0, tile);
     std::mt19937 generator(7);
     std::uniform_real_distribution<double> uniform(-1, block_width<2> + 1);
     std::vector<double> x(200), z(200), value(200), slope_x(200), slope_z(200);
@@ -90,8 +88,8 @@ TEST(ExternalPressure, IsLoadedAtTheVerticesAroundABlock) {
       x[p] = std::clamp(0.5 * (first_cell[0] + uniform(generator)), 0.0, 10.0);
       z[p] = std::clamp(0.5 * (first_cell[1] + uniform(generator)), 0.0, 10.0);
     }
-    linear->gather_field({&g, first_cell, 0, 200, {x.data(), z.data()}}, tile.data(),
-                         {value.data(), {slope_x.data(), slope_z.data()}});
+    interpolate<2>(tile, {&g, first_cell, 0, 200, {x.data(), z.data()}},
+                   {value.data(), {slope_x.data(), slope_z.data()}});
     for (std::size_t p = 0; p < x.size(); ++p) {
       ASSERT_NEAR(value[p], field.at({x[p], z[p]}, 0), 1e-9) << x[p] << ", " << z[p];
       ASSERT_NEAR(slope_x[p], 0, 1e-9);
@@ -137,10 +135,8 @@ struct Block {
   template <class Visit>
   void forces(const ExternalPressure<2>& outside, const Visit& visit) {
     scatter(scene, ScatterWhat::momentum);
-    LaneArray tile;
-    tile.resize(scene.nodes.tile_size());
     for (std::size_t b = 0; b < scene.blocks.particle_blocks().size(); ++b)
-      pores.scatter_forces(scene, b, scene.blocks.particle_blocks()[b], tile.data(), outside, ScatterWhat::force);
+      pores.scatter_forces(scene, b, scene.blocks.particle_blocks()[b], outside, ScatterWhat::force);
     for (std::size_t b = 0; b < scene.blocks.node_blocks().size(); ++b) {
       scene.nodes.collect_momentum(scene.blocks, b);
       scene.nodes.collect_force(scene.blocks, b);

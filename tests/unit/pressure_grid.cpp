@@ -216,7 +216,7 @@ TEST(PressureGrid, FindsTheEntriesOfAllTiles) {
         [&](std::size_t i) { return grid.cells()[i].place; }, [&](std::size_t i) { return grid.cell_entries(i); },
         [&](std::size_t b) { return grid.cells_of_tile(b); });
     expect_entries<Dim>(
-        blocks, grid.vertex_tile, tile_width<Dim>(1), grid.vertices().size(),
+        blocks, vertex_tile<Dim>, tile_width<Dim>(1), grid.vertices().size(),
         [&](std::size_t i) { return grid.vertices()[i].place; }, [&](std::size_t i) { return grid.vertex_entries(i); },
         [&](std::size_t b) { return grid.vertices_of_tile(b); });
   });

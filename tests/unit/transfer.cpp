@@ -347,32 +347,6 @@ struct RandomMotion {
 };
 
 template <int Dim>
-void expect_field(const Fixture<Dim>& f) {
-  const RandomMotion<Dim> field(f);
-  std::vector<double> value(particles, 7.0);
-  std::array<std::vector<double>, Dim> gradient;
-  FieldGather<Dim> out{value.data(), {}};
-  for (int a = 0; a < Dim; ++a) {
-    gradient[a].assign(particles, 7.0);
-    out.gradient[a] = gradient[a].data();
-  }
-  f.shape.gather_field(f.view(), field.tile.lanes.data(), out);
-  for (std::size_t p = 0; p < particles; ++p) {
-    const Stencil<Dim> s = f.stencil(p);
-    double sum = 0;
-    Vector<Dim> slope{};
-    for (int n = 0; n < s.count; ++n) {
-      const auto i = static_cast<std::size_t>(n);
-      sum += s.value[i] * field.at(s.node[i], 0, 0);
-      for (int a = 0; a < Dim; ++a) slope[a] += s.gradient[i][a] * field.at(s.node[i], 0, 0);
-    }
-    ASSERT_NEAR(value[p], sum, 1e-13) << "particle " << p;
-    for (int a = 0; a < Dim; ++a)
-      ASSERT_NEAR(gradient[a][p], slope[a], f.round_off() * 1e-13 / f.grid.cell[a]) << "particle " << p;
-  }
-}
-
-template <int Dim>
 void expect_divergence(const Fixture<Dim>& f) {
   const RandomMotion<Dim> motion(f);
   std::vector<double> divergence(particles, 7.0);
@@ -473,11 +447,6 @@ TEST_P(Transfer, BodyForceIsSharedLikeTheMass) {
 TEST_P(Transfer, ForcesOfPressureEqualTheSumsOverTheStencil) {
   for_each_place<2>([](auto& f, bool) { expect_pressure<2>(f); });
   for_each_place<3>([](auto& f, bool) { expect_pressure<3>(f); });
-}
-
-TEST_P(Transfer, FieldEqualsTheSumsOverTheStencil) {
-  for_each_place<2>([](auto& f, bool) { expect_field<2>(f); });
-  for_each_place<3>([](auto& f, bool) { expect_field<3>(f); });
 }
 
 TEST_P(Transfer, MappingAgainEqualsTheSumsOverTheStencil) {
