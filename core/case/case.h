@@ -76,6 +76,7 @@ struct ContactCase {
   double adhesion = 0;                 ///< shear traction that needs no pressure [Pa]
   std::vector<double> normal;          ///< of the surfaces, either way round; empty: found from the particles
   Place place;
+  int bodies() const { return static_cast<int>(materials.size()) + 1; }
 };
 
 /// How the equations are discretised. See docs/theory.md.

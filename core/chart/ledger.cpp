@@ -60,31 +60,29 @@ Entry entry_of(const std::vector<std::string>& cells) {
 
 }  // namespace
 
-Ledger::Ledger(std::filesystem::path file, bool start_anew) : file_(std::move(file)) {
-  lock_folder();
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY)) {
+  using namespace std::chrono_literals;
+  const auto patience = std::chrono::steady_clock::now() + 3s;
+  while (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    if (std::chrono::steady_clock::now() > patience) {
+      close(descriptor_);
+      throw std::runtime_error(
+          fmt::format("another study works in {}; wait until it ends, or take another --output", folder.string()));
+    }
+    std::this_thread::sleep_for(2ms);
+  }
+}
+
+FolderLock::~FolderLock() { close(descriptor_); }
+
+Ledger::Ledger(std::filesystem::path file, bool start_anew) : file_(std::move(file)), lock_(file_.parent_path()) {
   if (!start_anew && std::filesystem::exists(file_)) read();
   std::string text = header;
   for (const Entry& entry : entries_) text += row_of(entry);
   replace_text_file(file_, text);
   out_.open(file_, std::ios::app);
   if (!out_) throw std::runtime_error(fmt::format("{} cannot be written", file_.string()));
-}
-
-Ledger::~Ledger() { close(folder_); }
-
-/// Two studies in one folder would write over each other's runs. A run whose study was killed dies a moment later. On a
-/// file system without locks nothing is refused.
-void Ledger::lock_folder() {
-  using namespace std::chrono_literals;
-  const std::string folder = file_.parent_path().string();
-  folder_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY);
-  const auto patience = std::chrono::steady_clock::now() + 3s;
-  while (flock(folder_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    if (std::chrono::steady_clock::now() > patience)
-      throw std::runtime_error(
-          fmt::format("another study works in {}; wait until it ends, or take another --output", folder));
-    std::this_thread::sleep_for(2ms);
-  }
 }
 
 void Ledger::read() {

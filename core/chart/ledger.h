@@ -21,23 +21,33 @@ struct Entry {
   RunReport report;
 };
 
+/// Keeps other studies out of a folder. Processes that this one starts inherit the lock: it ends with the last of them.
+class FolderLock {
+ public:
+  /// Waits a moment, for a run whose study was killed dies soon. Throws std::runtime_error if the folder stays locked;
+  /// on a file system without locks nothing is refused.
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 class Ledger {
  public:
   /// Reads what is there. A last row that was cut is dropped. Throws std::runtime_error for a file of another kind, and
-  /// where another study, or a run that one left behind, works in the folder.
+  /// where another study, or a run that one left behind, works in the folder: they would write over each other's runs.
   Ledger(std::filesystem::path file, bool start_anew);
-  ~Ledger();
-  Ledger(const Ledger&) = delete;
-  Ledger& operator=(const Ledger&) = delete;
   void append(const Entry& entry);
   const std::vector<Entry>& entries() const { return entries_; }
   const Entry* find(const std::string& identity, int repetition) const;
 
  private:
   void read();
-  void lock_folder();
   std::filesystem::path file_;
-  int folder_ = -1;  ///< descriptor of the locked folder; the runs inherit it, so the lock ends with the last of them
+  FolderLock lock_;
   std::vector<Entry> entries_;
   std::ofstream out_;
 };

@@ -5,7 +5,7 @@
 namespace sluice {
 
 template <int Dim>
-Dashpots<Dim>::Dashpots(const Faces<Dim>& faces, const GridGeometry<Dim>& grid, int reach) {
+Dashpots<Dim>::Dashpots(const Faces<Dim>& faces, const GridGeometry<Dim>& grid, int reach, int bodies) {
   for (int a = 0; a < Dim; ++a) nodes_[a] = grid.cells[a] + reach;
   for (int axis = 0; axis < Dim; ++axis)
     for (int side = 0; side < 2; ++side) {
@@ -14,8 +14,8 @@ Dashpots<Dim>::Dashpots(const Faces<Dim>& faces, const GridGeometry<Dim>& grid, 
       std::size_t count = 1;
       for (int a = 0; a < Dim; ++a)
         if (a != axis) count *= static_cast<std::size_t>(nodes_[a]);
-      faces_.push_back({axis, faces.wall_node(axis, side), side == 0 ? -1.0 : 1.0, *rule.absorbing,
-                        std::vector<Vector<Dim>>(count, Vector<Dim>{})});
+      faces_.push_back({axis, faces.wall_node(axis, side), side == 0 ? -1.0 : 1.0, *rule.absorbing, count,
+                        std::vector<Vector<Dim>>(static_cast<std::size_t>(bodies) * count, Vector<Dim>{})});
     }
   any_ = !faces_.empty();
 }
@@ -37,7 +37,7 @@ double damped(double before, double after, double rate) { return (after - 0.5 * 
 }  // namespace
 
 template <int Dim>
-void Dashpots<Dim>::impose_on_block(const NodeBlock<Dim>& nodes, Lane* motion, const Lane* area, double kick,
+void Dashpots<Dim>::impose_on_block(const NodeBlock<Dim>& nodes, int body, Lane* motion, const Lane* area, double kick,
                                     bool first) {
   constexpr int width = block_width<Dim>;
   for (Face& face : faces_) {
@@ -53,7 +53,7 @@ void Dashpots<Dim>::impose_on_block(const NodeBlock<Dim>& nodes, Lane* motion, c
       }
       if (!reached) continue;
       const NodeMotion<Dim> own{motion + n * motion_lanes<Dim>};
-      Vector<Dim>& held = face.held[number_on_face(node, face.axis)];
+      Vector<Dim>& held = face.held[static_cast<std::size_t>(body) * face.nodes + number_on_face(node, face.axis)];
       const double per_pascal = face.beyond.density * std::max(0.0, face.outward * area[n][face.axis]);
       for (int a = 0; a < Dim; ++a) {
         const double before = own.v(a) - own.change(a);

@@ -11,14 +11,15 @@ namespace sluice {
 template <int Dim>
 class Dashpots {
  public:
-  Dashpots(const Faces<Dim>& faces, const GridGeometry<Dim>& grid, int reach);
+  /// `bodies`: those that have nodes of their own.
+  Dashpots(const Faces<Dim>& faces, const GridGeometry<Dim>& grid, int reach, int bodies);
 
   bool any() const { return any_; }
 
-  /// Acts on the motion of a node block after forces have acted, and before anything else does. `area`, a lane a node,
-  /// is that of Beside. In the first step the nodes note what holds them in place.
-  void impose(const NodeBlock<Dim>& nodes, Lane* motion, const Lane* area, double kick, bool first) {
-    if (any_) impose_on_block(nodes, motion, area, kick, first);
+  /// Acts on the motion of a node block of a body after forces and other bodies have acted, and before anything else
+  /// does. `area`, a lane a node, is that of Beside. In the first step the nodes note what holds them in place.
+  void impose(const NodeBlock<Dim>& nodes, int body, Lane* motion, const Lane* area, double kick, bool first) {
+    if (any_) impose_on_block(nodes, body, motion, area, kick, first);
   }
 
   /// For checkpoints.
@@ -30,9 +31,10 @@ class Dashpots {
     int axis = 0, layer = 0;
     double outward = 0;
     AbsorbingCase beyond;
-    std::vector<Vector<Dim>> held;  ///< acceleration that the face gives at rest, by node of the face [m/s2]
+    std::size_t nodes = 1;
+    std::vector<Vector<Dim>> held;  ///< acceleration that the face gives at rest, by body and node of the face [m/s2]
   };
-  void impose_on_block(const NodeBlock<Dim>& nodes, Lane* motion, const Lane* area, double kick, bool first);
+  void impose_on_block(const NodeBlock<Dim>& nodes, int body, Lane* motion, const Lane* area, double kick, bool first);
   std::size_t number_on_face(const Index<Dim>& node, int axis) const;
 
   bool any_ = false;

@@ -26,7 +26,7 @@ BodyContact<Dim>::BodyContact(const ContactCase& contact, const std::vector<std:
   // The materials of the list are bodies of their own, numbered as in it; all others are one more.
   for (const std::string& name : materials)
     body_of_.push_back(static_cast<int>(std::ranges::find(contact.materials, name) - contact.materials.begin()));
-  nodes_.resize(contact.materials.size() + 1);
+  nodes_.resize(static_cast<std::size_t>(contact.bodies()));
   surface_.resize(nodes_.size());
 }
 

@@ -58,7 +58,7 @@ Scene<Dim>::Scene(const Case& definition)
       transfer(transfer_registry().find(definition.scheme.transfer, definition.source.place)),
       scheme(definition.scheme),
       faces(definition.faces, grid, shape->reach(), shape->outside()),
-      dashpots(faces, grid, shape->reach()),
+      dashpots(faces, grid, shape->reach(), definition.contact ? definition.contact->bodies() : 1),
       obstacles(definition.obstacles, node_places<Dim>(*this), 0.5 * (shape->reach() + 1), grid.min, periods(grid)),
       particles(Dim) {
   for (std::size_t a = 0; a < Dim; ++a) gravity[a] = definition.gravity.empty() ? 0 : definition.gravity[a];
@@ -96,7 +96,7 @@ void Scene<Dim>::initialise_domains() {
 template <int Dim>
 void Scene<Dim>::resize_nodes() {
   nodes.resize(blocks, shape->reach());
-  if (wants_area()) surface.resize(blocks, shape->reach());
+  if (wants_area() && contact == nullptr) surface.resize(blocks, shape->reach());
   if (contact != nullptr) contact->resize(blocks, shape->reach());
   if (unit_pressure.index >= 0) {
     std::fill_n(particles.columns.data(unit_pressure, 0), particles.size(), 1.0);

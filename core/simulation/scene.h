@@ -39,7 +39,8 @@ struct Scene {
   Blocks<Dim> blocks;
   NodeFields<Dim> nodes;
   std::unique_ptr<BodyContact<Dim>> contact;  ///< of bodies that do not stick together, or null
-  NodeFields<Dim> surface;  ///< area of the surface of the material by node, its forces; only where wanted
+  NodeFields<Dim> surface;  ///< area of the surface of the material by node, its forces; only where wanted, and not
+                            ///< with `contact`, which has one for each body
 
   double time = 0;         ///< [s]
   std::int64_t step = 0;   ///< steps completed
@@ -52,6 +53,10 @@ struct Scene {
 
   /// Time over which velocities change in a step of length dt: they live at the middle of steps (leap-frog).
   double kick(double dt) const { return 0.5 * (previous_dt + dt); }
+
+  /// The nodes of a body, and the area of its surface.
+  NodeFields<Dim>& nodes_of(int body) { return contact == nullptr ? nodes : contact->nodes(body); }
+  NodeFields<Dim>& surface_of(int body) { return contact == nullptr ? surface : contact->surface(body); }
 
   /// Called once, when all bodies are filled: the domains of the particles.
   void initialise_domains();

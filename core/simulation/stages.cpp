@@ -16,33 +16,26 @@ bool activate_blocks(Scene<Dim>& scene) {
 
 namespace {
 
-/// The particles of a block to the nodes of their bodies; where other bodies are near, the surfaces, too. A body of
-/// several materials may have several runs of particles: the first fills the tile, the others are added to it.
+/// The particles of a block to the nodes of their bodies; the surfaces, too, where other bodies are near or somebody
+/// else asks for them.
 template <int Dim>
 void scatter_bodies(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std::size_t b) {
-  thread_local std::array<LaneArray, 2> scratch;
   BodyContact<Dim>& contact = *scene.contact;
   const ParticleBlock<Dim>& block = scene.blocks.particle_blocks()[b];
-  const std::size_t size = scene.nodes.tile_size();
-  for (LaneArray& tile : scratch) tile.resize(size);
-  std::uint64_t begun = 0;
-  contact.for_runs(scene.blocks, block, [&](int body, std::uint32_t begin, std::uint32_t end) {
-    const bool first = (begun >> body & 1) == 0;
-    begun |= std::uint64_t{1} << body;
+  const bool surfaces = what != ScatterWhat::momentum && (contact.at_others(b) || scene.wants_area());
+  TilesOfRuns runs(scene.nodes.tile_size());
+  for_bodies(scene, block, [&](int body, const BlockParticles<Dim>& particles, std::uint32_t) {
     const auto run = [&](ScatterInput<Dim> in, ScatterWhat which, NodeFields<Dim>& fields) {
-      in.particles.begin = begin, in.particles.end = end;
-      const auto add = [&](Lane* tile, const Lane* more) {
-        for (std::size_t n = 0; n < size; ++n) tile[n] += more[n];
-      };
-      scene.shape->scatter(which, in, impulse_dt, first ? fields.momentum_tile(b) : scratch[0].data(),
-                           first ? fields.force_tile(b) : scratch[1].data());
-      const bool both = which == ScatterWhat::momentum_and_force;
-      if (!first && which != ScatterWhat::force) add(fields.momentum_tile(b), scratch[0].data());
-      if (!first && (both || which == ScatterWhat::force)) add(fields.force_tile(b), scratch[1].data());
+      in.particles = particles;
+      const bool forces = which == ScatterWhat::momentum_and_force || which == ScatterWhat::force;
+      const std::array<Lane*, 2> tiles{which == ScatterWhat::force ? nullptr : fields.momentum_tile(b),
+                                       forces ? fields.force_tile(b) : nullptr};
+      runs.add_run(body, tiles,
+                   [&](const std::array<Lane*, 2>& to) { scene.shape->scatter(which, in, impulse_dt, to[0], to[1]); });
     };
     run(scene.scatter_input(block), what, contact.nodes(body));
-    if (what != ScatterWhat::momentum && contact.at_others(b))
-      run(scene.surface_input(block), ScatterWhat::force, contact.surface(body));
+    if (surfaces) run(scene.surface_input(block), ScatterWhat::force, contact.surface(body));
+    runs.begin(body);
   });
 }
 
@@ -66,6 +59,7 @@ void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, Items some)
 
 template <int Dim>
 void scatter_surface(Scene<Dim>& scene, Items some) {
+  if (scene.contact != nullptr) return;  // those of bodies go with their forces
   const auto timing = scene.clock.time(Stage::scatter);
   parallel_for(some.within(scene.blocks.particle_blocks().size()), [&](std::size_t b) {
     const ParticleBlock<Dim>& block = scene.blocks.particle_blocks()[b];
@@ -144,27 +138,13 @@ void divide_by_mass(const NodeBlock<Dim>& nodes, const Lane* momentum, Lane* mot
   accelerate<Dim>(nodes, momentum, nullptr, 0, {}, 0, motion);
 }
 
-namespace {
-
-/// Calls body(fields) for the fields of a block of nodes: those of the scene, or of each body that is there.
-template <int Dim, class Body>
-void for_fields(Scene<Dim>& scene, std::size_t node_block, const Body& body) {
-  if (scene.contact == nullptr) {
-    body(scene.nodes);
-    return;
-  }
-  for (int g = 0; g < scene.contact->bodies(); ++g)
-    if (scene.contact->has(node_block, g)) body(scene.contact->nodes(g));
-}
-
-}  // namespace
-
 template <int Dim>
 void velocity_from_momentum(Scene<Dim>& scene, Moment moment, Items some) {
   const auto timing = scene.clock.time(Stage::nodes);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
-    for_fields(scene, b, [&](NodeFields<Dim>& nodes) {
+    for_bodies_of_nodes(scene, b, [&](int body) {
+      NodeFields<Dim>& nodes = scene.nodes_of(body);
       nodes.collect_momentum(scene.blocks, b);
       divide_by_mass<Dim>(block, nodes.momentum(b), nodes.motion(b));
       scene.obstacles.fix(block, b, nodes.momentum(b), nodes.motion(b), moment);
@@ -177,9 +157,10 @@ namespace {
 
 /// What faces and obstacles do to the new velocities of a block. Faces come last: nothing may pass them.
 template <int Dim>
-void impose_boundaries(Scene<Dim>& scene, NodeFields<Dim>& nodes, std::size_t b, double kick, double lightest,
+void impose_boundaries(Scene<Dim>& scene, int body, std::size_t b, double kick, double lightest,
                        NodeFields<Dim>* without_friction) {
   const auto& block = scene.blocks.node_blocks()[b];
+  NodeFields<Dim>& nodes = scene.nodes_of(body);
   const Lane* const momentum = nodes.momentum(b);
   std::array<Lane, block_nodes<Dim>> relief, area;
   Beside beside;
@@ -196,8 +177,8 @@ void impose_boundaries(Scene<Dim>& scene, NodeFields<Dim>& nodes, std::size_t b,
     beside.relief = take(*without_friction, 1, relief);
     scene.obstacles.add_relief(b, momentum, kick, relief.data());
   }
-  if (scene.wants_area()) beside.area = take(scene.surface, -1, area);
-  scene.dashpots.impose(block, nodes.motion(b), beside.area, kick, scene.step == 0);
+  if (scene.wants_area()) beside.area = take(scene.surface_of(body), -1, area);
+  scene.dashpots.impose(block, body, nodes.motion(b), beside.area, kick, scene.step == 0);
   scene.obstacles.fix_with_friction(block, b, momentum, nodes.motion(b), beside, kick);
   scene.faces.fix_with_friction(block, nodes.motion(b), beside);
 }
@@ -221,7 +202,8 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
   const double lightest = lightest_node(scene);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
-    for_fields(scene, b, [&](NodeFields<Dim>& nodes) {
+    for_bodies_of_nodes(scene, b, [&](int body) {
+      NodeFields<Dim>& nodes = scene.nodes_of(body);
       if (collect_momentum) nodes.collect_momentum(scene.blocks, b);
       if (collect_force) nodes.collect_force(scene.blocks, b);
       press_on_obstacles(scene, at_obstacles, b, false);
@@ -230,8 +212,8 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
     });
     if (scene.contact != nullptr) scene.contact->exchange(scene.blocks, b, kick, lightest);
     scene.obstacles.start_force(b);
-    for_fields(scene, b,
-               [&](NodeFields<Dim>& nodes) { impose_boundaries(scene, nodes, b, kick, lightest, without_friction); });
+    for_bodies_of_nodes(scene, b,
+                        [&](int body) { impose_boundaries(scene, body, b, kick, lightest, without_friction); });
   });
 }
 
@@ -247,7 +229,7 @@ void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_fric
     press_on_obstacles(scene, at_obstacles, b, true);
     accelerate<Dim>(block, momentum, scene.nodes.force(b), kick, scene.gravity, lightest, scene.nodes.motion(b));
     scene.obstacles.start_force(b);
-    impose_boundaries(scene, scene.nodes, b, kick, lightest, without_friction);
+    impose_boundaries(scene, 0, b, kick, lightest, without_friction);
   });
 }
 

@@ -77,22 +77,70 @@ void for_each_block(Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces, 
 template <int Dim>
 void prepare(const Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces);
 
-/// Calls gather(particles, first) for the particles of a block, with the motion of their nodes in `tile`; `first` is
-/// the number of the first of them in the block. Bodies that do not stick together come one after the other.
-template <int Dim, class Gather>
-void from_nodes(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile, const Gather& gather) {
+/// Calls visit(body, particles, first) for the particles of a block: all of them for body 0; or, with bodies that do
+/// not stick together, run by run those of one body. `first` is the number of the first of them in the block.
+template <int Dim, class Visit>
+void for_bodies(const Scene<Dim>& scene, const ParticleBlock<Dim>& block, const Visit& visit) {
+  BlockParticles<Dim> run = scene.view(block);
   if (scene.contact == nullptr) {
-    scene.nodes.load_motion(scene.blocks, b, tile);
-    gather(scene.view(block), 0u);
+    visit(0, run, 0u);
     return;
   }
   scene.contact->for_runs(scene.blocks, block, [&](int body, std::uint32_t begin, std::uint32_t end) {
-    scene.contact->nodes(body).load_motion(scene.blocks, b, tile);
-    BlockParticles<Dim> run = scene.view(block);
     run.begin = begin, run.end = end;
-    gather(run, begin - block.begin);
+    visit(body, run, begin - block.begin);
   });
 }
+
+/// Calls visit(body) for the bodies that have nodes in a block of them.
+template <int Dim, class Visit>
+void for_bodies_of_nodes(const Scene<Dim>& scene, std::size_t node_block, const Visit& visit) {
+  const int bodies = scene.contact == nullptr ? 1 : scene.contact->bodies();
+  for (int g = 0; g < bodies; ++g)
+    if (scene.contact == nullptr || scene.contact->has(node_block, g)) visit(g);
+}
+
+/// Calls gather(particles, first), as for_bodies does, with the motion of their nodes in `tile`.
+template <int Dim, class Gather>
+void from_nodes(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, Lane* tile, const Gather& gather) {
+  for_bodies(scene, block, [&](int body, const BlockParticles<Dim>& particles, std::uint32_t first) {
+    scene.nodes_of(body).load_motion(scene.blocks, b, tile);
+    gather(particles, first);
+  });
+}
+
+/// A body may have several runs of particles in a block: the first fills a tile of its nodes, as kernels do, the others
+/// are added to it.
+class TilesOfRuns {
+ public:
+  explicit TilesOfRuns(std::size_t tile_size) : size_(tile_size) {}
+  bool has_begun(int body) const { return (begun_ >> body & 1) != 0; }
+  /// Calls fill(tiles) with the tiles, or with others whose content then goes to them. Null tiles stay null.
+  template <std::size_t count, class Fill>
+  void add_run(int body, const std::array<Lane*, count>& tiles, const Fill& fill) {
+    static_assert(count <= most);
+    if (!has_begun(body)) {
+      fill(tiles);
+    } else {
+      std::array<Lane*, count> more;
+      for (std::size_t t = 0; t < count; ++t) more[t] = tiles[t] == nullptr ? nullptr : scratch(t);
+      fill(more);
+      for (std::size_t t = 0; t < count; ++t)
+        for (std::size_t n = 0; tiles[t] != nullptr && n < size_; ++n) tiles[t][n] += more[t][n];
+    }
+  }
+  void begin(int body) { begun_ |= std::uint64_t{1} << body; }
+
+ private:
+  static constexpr std::size_t most = 2;
+  Lane* scratch(std::size_t t) const {
+    thread_local std::array<LaneArray, most> memory;
+    memory[t].resize(size_);
+    return memory[t].data();
+  }
+  std::size_t size_;
+  std::uint64_t begun_ = 0;
+};
 
 /// Nodes to particles: velocity, position, affine field, eqs. (19)-(21). Positions go to `position_column`, domains
 /// that deform to `domain_column`; without a column they stay as they are.

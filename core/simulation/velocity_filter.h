@@ -23,18 +23,23 @@ class VelocityFilter {
   /// Nobody may need the change of velocity any more.
   void add(Sweep<Dim>& sweep, Scene<Dim>& scene);
 
+  /// What gets the sum: the nodes of each body.
+  using Targets = std::vector<NodeFields<Dim>*>;
+
   // The same in parts, for another velocity of the nodes. `momentum` is {m, m u_1}.
-  void take(Scene<Dim>& scene, std::size_t node_block, const Lane* momentum, const Faces<Dim>& faces);
+  void take(Scene<Dim>& scene, std::size_t node_block, int body, const Lane* momentum, const Faces<Dim>& faces);
   void resize(const Scene<Dim>& scene);
-  /// `mass` is the column of masses that `momentum` was made with; `target` is what gets the sum.
-  void add_maps(Sweep<Dim>& sweep, Scene<Dim>& scene, ColumnId mass, const Faces<Dim>& faces, NodeFields<Dim>& target);
+  /// `mass` is the column of masses that `momentum` was made with.
+  void add_maps(Sweep<Dim>& sweep, Scene<Dim>& scene, ColumnId mass, const Faces<Dim>& faces, const Targets& targets);
 
  private:
   void map(Scene<Dim>& scene, int k, ColumnId mass, Items some);
-  void collect(Scene<Dim>& scene, int k, const Faces<Dim>& faces, NodeFields<Dim>& target, Items some);
+  void collect(Scene<Dim>& scene, int k, const Faces<Dim>& faces, const Targets& targets, Items some);
+  void collect_body(Scene<Dim>& scene, int k, const Faces<Dim>& faces, int body, NodeFields<Dim>& target,
+                    std::size_t node_block);
 
-  /// u_k: those of odd and even k in turn, so that a stage does not write what another may still read.
-  std::array<NodeFields<Dim>, 2> nodes_;
+  /// u_k of each body: those of odd and even k in turn, so that a stage does not write what another may still read.
+  std::vector<std::array<NodeFields<Dim>, 2>> nodes_;
   std::vector<Workspace<Dim>> workspaces_;
 };
 

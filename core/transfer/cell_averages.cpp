@@ -47,10 +47,14 @@ void CellAverages<Dim>::locate(const BlockParticles<Dim>& block) {
 }
 
 template <int Dim>
+void CellAverages<Dim>::clear(std::size_t number) {
+  std::fill_n(tiles_.data() + number * tile_size<Dim>, tile_size<Dim>, Sums{});
+}
+
+template <int Dim>
 void CellAverages<Dim>::add(std::size_t number, const BlockParticles<Dim>& block, const double* weight,
                             const double* quantity) {
   Sums* tile = tiles_.data() + number * tile_size<Dim>;
-  std::fill_n(tile, tile_size<Dim>, Sums{});
   const std::int32_t* const place = cell_.data() + block.begin;
   for (std::uint32_t p = 0; p < block.end - block.begin; ++p) {
     const double w = weight[block.begin + p];

@@ -9,8 +9,8 @@
 
 namespace sluice {
 
-/// Works block by block like the nodes do: `locate` before the particles move, then `add` on all blocks, then (after
-/// all are done) `mean` on all blocks. A particle may be up to tile_margin cells outside of its block.
+/// Works block by block like the nodes do: `locate` before the particles move, then `clear` and `add` on all blocks,
+/// then (after all are done) `mean` on all blocks. A particle may be up to tile_margin cells outside of its block.
 template <int Dim>
 class CellAverages {
  public:
@@ -20,6 +20,7 @@ class CellAverages {
   /// Notes the cell of each particle of the block. A strain belongs to the place where it was gathered.
   void locate(const BlockParticles<Dim>& block);
 
+  void clear(std::size_t number);
   /// Sums weight and weight * quantity over the particles of the block; `quantity` is indexed from 0 at its first
   /// particle.
   void add(std::size_t number, const BlockParticles<Dim>& block, const double* weight, const double* quantity);

@@ -97,7 +97,7 @@ void StressUpdate<Dim>::move_and_strain(Scene<Dim>& scene, double dt, Items some
   const MotionUpdate<Dim> update = motion_update(scene, dt, scene.particles.position, scene.domain);
   const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     const StrainIncrements<Dim> strain = f_bar_ ? kept_strain(scene, block.begin) : work.strain;
-    if (f_bar_) cells_.locate(scene.view(block));
+    if (f_bar_) locate_in_cells(scene, block);
     motion_[b] = {};
     from_nodes(scene, b, block, work.motion_tile.data(),
                [&](const BlockParticles<Dim>& particles, std::uint32_t first) {
@@ -127,7 +127,7 @@ void StressUpdate<Dim>::strain(Scene<Dim>& scene, double dt, const AfterBlock& a
         });
     motion_[b].largest_strain_rate = dt > 0 ? largest / dt : 0;
     if (f_bar_) {
-      cells_.locate(scene.view(block));
+      locate_in_cells(scene, block);
       add_to_cells(scene, b, block, work);
       return;
     }
@@ -137,14 +137,25 @@ void StressUpdate<Dim>::strain(Scene<Dim>& scene, double dt, const AfterBlock& a
   for_each_block(scene, workspaces_, body, some);
 }
 
-/// F-bar on cells, eq. (26): the volumetric strain increment of each particle gives way to the mean of its cell. Here
-/// the increments of a block go to the cells.
+template <int Dim>
+void StressUpdate<Dim>::locate_in_cells(const Scene<Dim>& scene, const ParticleBlock<Dim>& block) {
+  for_bodies(scene, block, [&](int body, const BlockParticles<Dim>& particles, std::uint32_t) {
+    cells_[static_cast<std::size_t>(body)].locate(particles);
+  });
+}
+
+/// F-bar on cells, eq. (26): the volumetric strain increment of each particle gives way to the mean of its body in its
+/// cell. Here the increments of a block go to the cells.
 template <int Dim>
 void StressUpdate<Dim>::add_to_cells(Scene<Dim>& scene, std::size_t number, const ParticleBlock<Dim>& block,
                                      Workspace<Dim>& work) {
   double* const dilation = work.numbers.data();
   volumetric_strain(kept_strain(scene, block.begin), block.end - block.begin, dilation);
-  cells_.add(number, scene.view(block), scene.particles.columns.data(scene.particles.volume), dilation);
+  for (auto& cells : cells_) cells.clear(number);
+  for_bodies(scene, block, [&](int body, const BlockParticles<Dim>& particles, std::uint32_t first) {
+    cells_[static_cast<std::size_t>(body)].add(number, particles, scene.particles.columns.data(scene.particles.volume),
+                                               dilation + first);
+  });
 }
 
 /// Here the means of the cells come back, and stresses follow.
@@ -154,7 +165,9 @@ void StressUpdate<Dim>::apply_f_bar(Scene<Dim>& scene, double dt, const AfterBlo
   const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
     const StrainIncrements<Dim> strain = kept_strain(scene, block.begin);
     double* const mean = work.numbers.data();
-    cells_.mean(scene.blocks, b, scene.view(block), mean);
+    for_bodies(scene, block, [&](int own, const BlockParticles<Dim>& particles, std::uint32_t first) {
+      cells_[static_cast<std::size_t>(own)].mean(scene.blocks, b, particles, mean + first);
+    });
     set_volumetric_strain(mean, block.end - block.begin, strain);
     stress_[b] = update_block(scene, block, strain, dt);
     if (after_block) after_block(b, block, work);
@@ -198,7 +211,10 @@ StrainIncrements<Dim> StressUpdate<Dim>::kept_strain(Scene<Dim>& scene, std::uin
 
 template <int Dim>
 void StressUpdate<Dim>::begin_step(const Scene<Dim>& scene) {
-  if (f_bar_) cells_.resize(scene.blocks, scene.shape->node_shift());
+  if (f_bar_) {
+    cells_.resize(scene.contact == nullptr ? 1 : static_cast<std::size_t>(scene.contact->bodies()));
+    for (auto& cells : cells_) cells.resize(scene.blocks, scene.shape->node_shift());
+  }
   motion_.assign(scene.blocks.particle_blocks().size(), {});
   stress_.assign(scene.blocks.particle_blocks().size(), {});
 }

@@ -83,6 +83,7 @@ class StressUpdate {
   void move_and_strain(Scene<Dim>& scene, double dt, Items some);
   void strain(Scene<Dim>& scene, double dt, const AfterBlock& after_block, Items some);
   void apply_f_bar(Scene<Dim>& scene, double dt, const AfterBlock& after_block, Items some);
+  void locate_in_cells(const Scene<Dim>& scene, const ParticleBlock<Dim>& block);
   void add_to_cells(Scene<Dim>& scene, std::size_t number, const ParticleBlock<Dim>& block, Workspace<Dim>& work);
   void take_next_position(Scene<Dim>& scene, Items some);
   StressReport update_block(Scene<Dim>& scene, const ParticleBlock<Dim>& block, const StrainIncrements<Dim>& strain,
@@ -96,7 +97,7 @@ class StressUpdate {
   ColumnId inertia_;
   ColumnId next_position_, next_domain_;        // MUSL: positions change after the stress update
   ColumnId strain_increment_, spin_increment_;  // F-bar: strains wait for the means of the cells
-  CellAverages<Dim> cells_;
+  std::vector<CellAverages<Dim>> cells_;        // of each body
   VelocityFilter<Dim> filter_;
   std::vector<Workspace<Dim>> workspaces_;
   std::vector<MotionReport> motion_;  // by block

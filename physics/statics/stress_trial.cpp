@@ -163,6 +163,7 @@ void StressTrial<Dim>::strain(double dt) {
     if (!stress_.f_bar()) return;
     cells_.locate(scene_.view(block));
     volumetric_strain(own, block.end - block.begin, work.numbers.data());
+    cells_.clear(b);
     cells_.add(b, scene_.view(block), scene_.particles.columns.data(scene_.particles.volume), work.numbers.data());
   });
 }

@@ -40,16 +40,7 @@ void check_contact(const Case& definition) {
     refuse("`integration: " + scheme.integration + "`", "take `integration: explicit`");
   if (scheme.stress_update != "usl")
     refuse("`stress_update: " + scheme.stress_update + "`", "it gains energy where bodies meet; take usl");
-  if (scheme.transfer == "xpic") refuse("`transfer: xpic`", "take flip, apic or tpic");
-  if (scheme.f_bar) refuse("`f_bar: true`", "cells that two bodies share would have one volume change");
-  for (const ObstacleCase& obstacle : definition.obstacles)
-    if (obstacle.surface.adhesion > 0)
-      refuse(fmt::format("`adhesion` of obstacles.{}", obstacle.name), "take friction");
   if (definition.surface_loads) refuse("`surface_loads`", "load the bodies by weight or by faces that move");
-  for (const auto& [name, face] : definition.faces)
-    if (face.absorbing || face.adhesion > 0)
-      refuse(fmt::format("`{}` of boundaries.{}", face.absorbing ? "absorbing" : "adhesion", name),
-             "take free, roller, fixed or friction");
   problems.throw_if_any();
 }
 

@@ -142,7 +142,7 @@ void RelativeMotion<Dim>::collect(Scene<Dim>& scene, Items some) {
   const bool filtered = VelocityFilter<Dim>::wanted(scene);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     nodes_.collect_momentum(scene.blocks, b);
-    if (filtered) filter_.take(scene, b, nodes_.momentum(b), *faces_);
+    if (filtered) filter_.take(scene, b, 0, nodes_.momentum(b), *faces_);
     for (std::size_t n = 0; n < block_nodes<Dim>; ++n) {
       const Lane water = nodes_.momentum(b)[n], mixture = scene.nodes.momentum(b)[n];
       const double share = mixture[0] > 0 ? water[0] / mixture[0] : 0;
@@ -277,7 +277,7 @@ void RelativeMotion<Dim>::compress(Scene<Dim>& scene, std::vector<Workspace<Dim>
 template <int Dim>
 void RelativeMotion<Dim>::gather(Sweep<Dim>& sweep, Scene<Dim>& scene, std::vector<Workspace<Dim>>& workspaces,
                                  double dt) {
-  if (VelocityFilter<Dim>::wanted(scene)) filter_.add_maps(sweep, scene, water_mass_, *faces_, nodes_);
+  if (VelocityFilter<Dim>::wanted(scene)) filter_.add_maps(sweep, scene, water_mass_, *faces_, {&nodes_});
   sweep.over_particles([this, &scene, &workspaces, dt](Items some) { take_from_nodes(scene, workspaces, dt, some); });
 }
 

@@ -127,16 +127,18 @@ TEST_F(ChartStudy, LedgerKeepsWhatWasRun) {
     ledger.append(entry);
   }
   std::ofstream(table, std::ios::app) << "00fe,cut off";
-  const Ledger again(table, false);
-  ASSERT_EQ(again.entries().size(), 2u);
-  const Entry* const first = again.find("00ff", 1);
-  ASSERT_NE(first, nullptr);
-  EXPECT_EQ(first->variant, "linear, \"x\"");
-  EXPECT_EQ(first->report.message, "a, b");
-  EXPECT_EQ(first->report.cpu_seconds, 1.0 / 3);
-  EXPECT_EQ(first->report.iterations, 17);
-  EXPECT_TRUE(std::isnan(again.find("00ff", 2)->error));
-  EXPECT_EQ(again.find("00fe", 1), nullptr);
+  {
+    const Ledger again(table, false);
+    ASSERT_EQ(again.entries().size(), 2u);
+    const Entry* const first = again.find("00ff", 1);
+    ASSERT_NE(first, nullptr);
+    EXPECT_EQ(first->variant, "linear, \"x\"");
+    EXPECT_EQ(first->report.message, "a, b");
+    EXPECT_EQ(first->report.cpu_seconds, 1.0 / 3);
+    EXPECT_EQ(first->report.iterations, 17);
+    EXPECT_TRUE(std::isnan(again.find("00ff", 2)->error));
+    EXPECT_EQ(again.find("00fe", 1), nullptr);
+  }
   EXPECT_TRUE(Ledger(table, true).entries().empty());
   std::ofstream(table) << "time_s\n";
   EXPECT_THROW(Ledger(table, false), std::runtime_error);

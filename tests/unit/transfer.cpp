@@ -514,6 +514,7 @@ void expect_cell_averages(double shift) {
   };
   for_each_block([&](std::size_t, const auto& view, std::size_t) { averages.locate(view); });
   for_each_block([&](std::size_t b, const auto& view, std::size_t begin) {
+    averages.clear(b);
     averages.add(b, view, weight.data(), quantity.data() + begin);
   });
   for_each_block(
