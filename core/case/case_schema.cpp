@@ -528,8 +528,7 @@ Schema<Case> make_case_schema() {
                  "What `sluice check` and `physics: auto` judge the case by; read by advisors, see `auto` below."},
             &Case::advice)
       .sections("changes", &Case::changes, change_schema(), "Materials that give way to others during the run.", false)
-      .section("contact", &Case::contact, contact_schema(),
-               "Bodies that do not stick to each other where they touch; for the physics `total_stress`.",
+      .section("contact", &Case::contact, contact_schema(), "Bodies that do not stick to each other where they touch.",
                Absent{"all bodies stick together"})
       .section("scheme", &Case::scheme, scheme_schema(), "How the equations are discretised.")
       .choice<OutflowPolicy>(

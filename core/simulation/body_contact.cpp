@@ -1,5 +1,7 @@
 #include "core/simulation/body_contact.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/grid/contact.h"
@@ -12,6 +14,20 @@ namespace {
 constexpr double least_agreement = 0.02;
 
 }  // namespace
+
+ContactProblems::ContactProblems(const Case& definition) : case_(definition) {
+  const SchemeCase& scheme = definition.scheme;
+  if (scheme.integration != "explicit")
+    refuse("`integration: " + scheme.integration + "`", "take `integration: explicit`");
+  if (scheme.stress_update != "usl")
+    refuse("`stress_update: " + scheme.stress_update + "`", "it gains energy where bodies meet; take usl");
+  if (definition.surface_loads) refuse("`surface_loads`", "load the bodies by weight or by faces that move");
+}
+
+void ContactProblems::refuse(const std::string& what, const std::string& instead) {
+  if (case_.contact)
+    problems_.add(case_.contact->place, fmt::format("contact: it does not go with {}; {}", what, instead));
+}
 
 template <int Dim>
 BodyContact<Dim>::BodyContact(const ContactCase& contact, const std::vector<std::string>& materials) {
@@ -62,16 +78,21 @@ void BodyContact<Dim>::resize(const Blocks<Dim>& blocks, int reach) {
 
 /// Pair by pair, in fixed order: momentum is kept whatever the number of bodies is.
 template <int Dim>
-void BodyContact<Dim>::exchange(const Blocks<Dim>& blocks, std::size_t node_block, double kick, double lightest) {
+void BodyContact<Dim>::exchange(const Blocks<Dim>& blocks, std::size_t node_block, double kick, double lightest,
+                                FieldsByBody<Dim>* without_friction) {
   if (!shared(node_block)) return;
-  for (int g = 0; g < bodies(); ++g)
-    if (has(node_block, g)) surface(g).collect_force(blocks, node_block);
+  for (int g = 0; g < bodies(); ++g) {
+    if (!has(node_block, g)) continue;
+    surface(g).collect_force(blocks, node_block);
+    if (without_friction != nullptr) (*without_friction)[static_cast<std::size_t>(g)].collect_force(blocks, node_block);
+  }
   for (int a = 0; a < bodies(); ++a)
     for (int b = a + 1; b < bodies(); ++b) {
       if (!has(node_block, a) || !has(node_block, b)) continue;
       const Lane *const of_a = nodes(a).momentum(node_block), *const of_b = nodes(b).momentum(node_block);
       for (int n = 0; n < block_nodes<Dim>; ++n)
-        if (of_a[n][0] > lightest && of_b[n][0] > lightest) exchange_at_node(node_block, n, a, b, kick);
+        if (of_a[n][0] > lightest && of_b[n][0] > lightest)
+          exchange_at_node(node_block, n, a, b, kick, without_friction);
     }
 }
 
@@ -99,7 +120,8 @@ Vector<Dim> BodyContact<Dim>::common_surface(const Lane& pull_a, const Lane& pul
 }
 
 template <int Dim>
-void BodyContact<Dim>::exchange_at_node(std::size_t node_block, int node, int a, int b, double kick) {
+void BodyContact<Dim>::exchange_at_node(std::size_t node_block, int node, int a, int b, double kick,
+                                        FieldsByBody<Dim>* without_friction) {
   const Vector<Dim> common = common_surface(surface(a).force(node_block)[node], surface(b).force(node_block)[node]);
   double area = 0;
   for (const double component : common) area += component * component;
@@ -111,6 +133,11 @@ void BodyContact<Dim>::exchange_at_node(std::size_t node_block, int node, int a,
   const double share_a = mass_b / (mass_a + mass_b), share_b = mass_a / (mass_a + mass_b);
   touch.friction = true;
   touch.adhesion = law_.adhesion * area * kick / (share_a * mass_a);  // over the reduced mass
+  if (without_friction != nullptr) {
+    const Lane force_a = (*without_friction)[static_cast<std::size_t>(a)].force(node_block)[node],
+               force_b = (*without_friction)[static_cast<std::size_t>(b)].force(node_block)[node];
+    for (int k = 0; k < Dim; ++k) touch.relief[k] = kick * (force_a[1 + k] / mass_a - force_b[1 + k] / mass_b);
+  }
   const NodeMotion<Dim> of_a{nodes(a).motion(node_block) + node * motion_lanes<Dim>};
   const NodeMotion<Dim> of_b{nodes(b).motion(node_block) + node * motion_lanes<Dim>};
   Lane lanes[motion_lanes<Dim>] = {};

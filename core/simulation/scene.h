@@ -54,9 +54,17 @@ struct Scene {
   /// Time over which velocities change in a step of length dt: they live at the middle of steps (leap-frog).
   double kick(double dt) const { return 0.5 * (previous_dt + dt); }
 
+  /// Bodies that have nodes of their own; one without `contact`.
+  int bodies() const { return contact == nullptr ? 1 : contact->bodies(); }
   /// The nodes of a body, and the area of its surface.
   NodeFields<Dim>& nodes_of(int body) { return contact == nullptr ? nodes : contact->nodes(body); }
   NodeFields<Dim>& surface_of(int body) { return contact == nullptr ? surface : contact->surface(body); }
+
+  /// Makes room for fields beside those of `nodes_of`.
+  void resize(FieldsByBody<Dim>& fields) const {
+    fields.resize(static_cast<std::size_t>(bodies()));
+    for (NodeFields<Dim>& of_body : fields) of_body.resize(blocks, shape->reach());
+  }
 
   /// Called once, when all bodies are filled: the domains of the particles.
   void initialise_domains();
@@ -64,7 +72,9 @@ struct Scene {
   void resize_nodes();
   /// Faces and obstacles take their places and velocities for a step of length dt.
   void move_boundaries(double dt);
-  bool any_friction() const { return faces.any_friction() || obstacles.any_friction(); }
+  bool any_friction() const {
+    return faces.any_friction() || obstacles.any_friction() || (contact != nullptr && contact->has_friction());
+  }
   /// Whether anything asks for the area of the surface of the material.
   bool wants_area() const { return faces.any_adhesion() || obstacles.any_adhesion() || dashpots.any(); }
   /// The particles of a block under unit pressure: their forces are the area of the surface of the material.

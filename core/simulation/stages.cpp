@@ -19,7 +19,8 @@ namespace {
 /// The particles of a block to the nodes of their bodies; the surfaces, too, where other bodies are near or somebody
 /// else asks for them.
 template <int Dim>
-void scatter_bodies(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std::size_t b) {
+void scatter_bodies(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std::size_t b,
+                    const ScatterInput<Dim>& input) {
   BodyContact<Dim>& contact = *scene.contact;
   const ParticleBlock<Dim>& block = scene.blocks.particle_blocks()[b];
   const bool surfaces = what != ScatterWhat::momentum && (contact.at_others(b) || scene.wants_area());
@@ -33,7 +34,7 @@ void scatter_bodies(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std:
       runs.add_run(body, tiles,
                    [&](const std::array<Lane*, 2>& to) { scene.shape->scatter(which, in, impulse_dt, to[0], to[1]); });
     };
-    run(scene.scatter_input(block), what, contact.nodes(body));
+    run(input, what, contact.nodes(body));
     if (surfaces) run(scene.surface_input(block), ScatterWhat::force, contact.surface(body));
     runs.begin(body);
   });
@@ -42,19 +43,20 @@ void scatter_bodies(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std:
 }  // namespace
 
 template <int Dim>
-void scatter_block(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std::size_t b) {
+void scatter_block(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std::size_t b,
+                   const ScatterInput<Dim>& input) {
   if (scene.contact != nullptr)
-    scatter_bodies(scene, what, impulse_dt, b);
+    scatter_bodies(scene, what, impulse_dt, b, input);
   else
-    scene.shape->scatter(what, scene.scatter_input(scene.blocks.particle_blocks()[b]), impulse_dt,
-                         scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
+    scene.shape->scatter(what, input, impulse_dt, scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
 }
 
 template <int Dim>
 void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, Items some) {
   const auto timing = scene.clock.time(Stage::scatter);
-  parallel_for(some.within(scene.blocks.particle_blocks().size()),
-               [&](std::size_t b) { scatter_block(scene, what, impulse_dt, b); });
+  parallel_for(some.within(scene.blocks.particle_blocks().size()), [&](std::size_t b) {
+    scatter_block(scene, what, impulse_dt, b, scene.scatter_input(scene.blocks.particle_blocks()[b]));
+  });
 }
 
 template <int Dim>
@@ -158,7 +160,7 @@ namespace {
 /// What faces and obstacles do to the new velocities of a block. Faces come last: nothing may pass them.
 template <int Dim>
 void impose_boundaries(Scene<Dim>& scene, int body, std::size_t b, double kick, double lightest,
-                       NodeFields<Dim>* without_friction) {
+                       FieldsByBody<Dim>* without_friction) {
   const auto& block = scene.blocks.node_blocks()[b];
   NodeFields<Dim>& nodes = scene.nodes_of(body);
   const Lane* const momentum = nodes.momentum(b);
@@ -174,13 +176,21 @@ void impose_boundaries(Scene<Dim>& scene, int body, std::size_t b, double kick, 
     return out.data();
   };
   if (without_friction != nullptr) {
-    beside.relief = take(*without_friction, 1, relief);
+    beside.relief = take((*without_friction)[static_cast<std::size_t>(body)], 1, relief);
     scene.obstacles.add_relief(b, momentum, kick, relief.data());
   }
   if (scene.wants_area()) beside.area = take(scene.surface_of(body), -1, area);
   scene.dashpots.impose(block, body, nodes.motion(b), beside.area, kick, scene.step == 0);
   scene.obstacles.fix_with_friction(block, b, momentum, nodes.motion(b), beside, kick);
   scene.faces.fix_with_friction(block, nodes.motion(b), beside);
+}
+
+/// What other bodies and boundaries do to the new velocities of a block.
+template <int Dim>
+void finish_nodes(Scene<Dim>& scene, std::size_t b, double kick, double lightest, FieldsByBody<Dim>* without_friction) {
+  if (scene.contact != nullptr) scene.contact->exchange(scene.blocks, b, kick, lightest, without_friction);
+  scene.obstacles.start_force(b);
+  for_bodies_of_nodes(scene, b, [&](int body) { impose_boundaries(scene, body, b, kick, lightest, without_friction); });
 }
 
 /// Adds the traction of a pressure on obstacles to the forces of a block.
@@ -197,7 +207,7 @@ void press_on_obstacles(Scene<Dim>& scene, NodeFields<Dim>* pressure, std::size_
 
 template <int Dim>
 void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some,
-                   NodeFields<Dim>* without_friction, NodeFields<Dim>* at_obstacles) {
+                   FieldsByBody<Dim>* without_friction, NodeFields<Dim>* at_obstacles) {
   const auto timing = scene.clock.time(Stage::nodes);
   const double lightest = lightest_node(scene);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
@@ -210,26 +220,24 @@ void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool c
       accelerate<Dim>(block, nodes.momentum(b), collect_force ? nodes.force(b) : nullptr, kick, scene.gravity, lightest,
                       nodes.motion(b));
     });
-    if (scene.contact != nullptr) scene.contact->exchange(scene.blocks, b, kick, lightest);
-    scene.obstacles.start_force(b);
-    for_bodies_of_nodes(scene, b,
-                        [&](int body) { impose_boundaries(scene, body, b, kick, lightest, without_friction); });
+    finish_nodes(scene, b, kick, lightest, without_friction);
   });
 }
 
 template <int Dim>
-void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction, Items some,
+void correct_nodes(Scene<Dim>& scene, double kick, FieldsByBody<Dim>* without_friction, Items some,
                    NodeFields<Dim>* at_obstacles) {
   const auto timing = scene.clock.time(Stage::nodes);
   const double lightest = lightest_node(scene);
   parallel_for(some.within(scene.blocks.node_blocks().size()), [&](std::size_t b) {
     const auto& block = scene.blocks.node_blocks()[b];
-    const Lane* const momentum = scene.nodes.momentum(b);
-    scene.nodes.add_force(scene.blocks, b);
-    press_on_obstacles(scene, at_obstacles, b, true);
-    accelerate<Dim>(block, momentum, scene.nodes.force(b), kick, scene.gravity, lightest, scene.nodes.motion(b));
-    scene.obstacles.start_force(b);
-    impose_boundaries(scene, 0, b, kick, lightest, without_friction);
+    for_bodies_of_nodes(scene, b, [&](int body) {
+      NodeFields<Dim>& nodes = scene.nodes_of(body);
+      nodes.add_force(scene.blocks, b);
+      press_on_obstacles(scene, at_obstacles, b, true);
+      accelerate<Dim>(block, nodes.momentum(b), nodes.force(b), kick, scene.gravity, lightest, nodes.motion(b));
+    });
+    finish_nodes(scene, b, kick, lightest, without_friction);
   });
 }
 
@@ -278,16 +286,16 @@ MotionUpdate<Dim> motion_update(Scene<Dim>& scene, double dt, ColumnId position_
   return update;
 }
 
-#define SLUICE_INSTANTIATE(Dim)                                                                                 \
-  template bool activate_blocks<Dim>(Scene<Dim>&);                                                              \
-  template void scatter_block<Dim>(Scene<Dim>&, ScatterWhat, double, std::size_t);                              \
-  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);                                          \
-  template void divide_by_mass<Dim>(const NodeBlock<Dim>&, const Lane*, Lane*);                                 \
-  template void velocity_from_momentum<Dim>(Scene<Dim>&, Moment, Items);                                        \
-  template void scatter_surface<Dim>(Scene<Dim>&, Items);                                                       \
-  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items, NodeFields<Dim>*, NodeFields<Dim>*); \
-  template void correct_nodes<Dim>(Scene<Dim>&, double, NodeFields<Dim>*, Items, NodeFields<Dim>*);             \
-  template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&);                                  \
+#define SLUICE_INSTANTIATE(Dim)                                                                                   \
+  template bool activate_blocks<Dim>(Scene<Dim>&);                                                                \
+  template void scatter_block<Dim>(Scene<Dim>&, ScatterWhat, double, std::size_t, const ScatterInput<Dim>&);      \
+  template void scatter<Dim>(Scene<Dim>&, ScatterWhat, double, Items);                                            \
+  template void divide_by_mass<Dim>(const NodeBlock<Dim>&, const Lane*, Lane*);                                   \
+  template void velocity_from_momentum<Dim>(Scene<Dim>&, Moment, Items);                                          \
+  template void scatter_surface<Dim>(Scene<Dim>&, Items);                                                         \
+  template void advance_nodes<Dim>(Scene<Dim>&, double, bool, bool, Items, FieldsByBody<Dim>*, NodeFields<Dim>*); \
+  template void correct_nodes<Dim>(Scene<Dim>&, double, FieldsByBody<Dim>*, Items, NodeFields<Dim>*);             \
+  template void prepare<Dim>(const Scene<Dim>&, std::vector<Workspace<Dim>>&);                                    \
   template MotionUpdate<Dim> motion_update<Dim>(Scene<Dim>&, double, ColumnId, ColumnId);
 SLUICE_INSTANTIATE(2)
 SLUICE_INSTANTIATE(3)

@@ -29,9 +29,11 @@ bool activate_blocks(Scene<Dim>& scene);
 /// Particles to nodes, eqs. (14)-(16): fills the tiles of the blocks.
 template <int Dim>
 void scatter(Scene<Dim>& scene, ScatterWhat what, double impulse_dt = 0, Items some = everything);
-/// The same for one block, to be called in parallel.
+/// The same for one block, to be called in parallel; `input`, for all its particles, may differ from
+/// Scene::scatter_input.
 template <int Dim>
-void scatter_block(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std::size_t b);
+void scatter_block(Scene<Dim>& scene, ScatterWhat what, double impulse_dt, std::size_t b,
+                   const ScatterInput<Dim>& input);
 
 /// v = p / m on one block, dv = 0.
 template <int Dim>
@@ -49,18 +51,18 @@ void scatter_surface(Scene<Dim>& scene, Items some = everything);
 
 /// v_new = v + kick (f / m + g), with faces, obstacles and their friction, eq. (18). With `collect_force` the force
 /// tiles are summed; without, the momentum holds the impulse already. `without_friction`, or null, has in its force
-/// tiles a part of all forces, whose pressure on faces gives no friction. `at_obstacles`, or null, has a pressure q as
-/// Obstacles::press wants it, slopes in the momentum tiles: where the forces have -q in their stress, what it does to
-/// the nodes around obstacles becomes what its gradient does.
+/// tiles a part of all forces, whose pressure on faces, obstacles and other bodies gives no friction. `at_obstacles`,
+/// or null, has a pressure q as Obstacles::press wants it, slopes in the momentum tiles: where the forces have -q in
+/// their stress, what it does to the nodes around obstacles becomes what its gradient does.
 template <int Dim>
 void advance_nodes(Scene<Dim>& scene, double kick, bool collect_momentum, bool collect_force, Items some = everything,
-                   NodeFields<Dim>* without_friction = nullptr, NodeFields<Dim>* at_obstacles = nullptr);
+                   FieldsByBody<Dim>* without_friction = nullptr, NodeFields<Dim>* at_obstacles = nullptr);
 
 /// The same once more, from the momentum that the nodes have, with the force tiles added to the forces that they have:
 /// a correction, for example by a pressure that was not known before. The pressure `at_obstacles` takes the place of
 /// the one before.
 template <int Dim>
-void correct_nodes(Scene<Dim>& scene, double kick, NodeFields<Dim>* without_friction, Items some = everything,
+void correct_nodes(Scene<Dim>& scene, double kick, FieldsByBody<Dim>* without_friction, Items some = everything,
                    NodeFields<Dim>* at_obstacles = nullptr);
 
 /// Calls body(number of the block, block, workspace of the thread) for every block of particles, in parallel.
@@ -95,8 +97,7 @@ void for_bodies(const Scene<Dim>& scene, const ParticleBlock<Dim>& block, const 
 /// Calls visit(body) for the bodies that have nodes in a block of them.
 template <int Dim, class Visit>
 void for_bodies_of_nodes(const Scene<Dim>& scene, std::size_t node_block, const Visit& visit) {
-  const int bodies = scene.contact == nullptr ? 1 : scene.contact->bodies();
-  for (int g = 0; g < bodies; ++g)
+  for (int g = 0; g < scene.bodies(); ++g)
     if (scene.contact == nullptr || scene.contact->has(node_block, g)) visit(g);
 }
 

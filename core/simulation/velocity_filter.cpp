@@ -17,7 +17,7 @@ double coefficient(int m, int k) {
 
 template <int Dim>
 void VelocityFilter<Dim>::resize(const Scene<Dim>& scene) {
-  nodes_.resize(scene.contact == nullptr ? 1 : static_cast<std::size_t>(scene.contact->bodies()));
+  nodes_.resize(static_cast<std::size_t>(scene.bodies()));
   for (auto& of_body : nodes_)
     for (auto& nodes : of_body) nodes.resize(scene.blocks, scene.shape->reach());
 }

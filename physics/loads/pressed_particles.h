@@ -17,7 +17,7 @@ class PressedParticles {
   void declare(Particles& particles);
   bool active() const { return active_; }
 
-  /// P and -V grad P at the particles of a block, at the time of the scene; `tile` is working memory.
+  /// P and -V grad P at the particles of a block, at the time of the scene.
   void take(Scene<Dim>& scene, const ParticleBlock<Dim>& block, const ExternalPressure<Dim>& outside);
 
   /// P as taken [Pa], a whole column.

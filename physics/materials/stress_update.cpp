@@ -212,7 +212,7 @@ StrainIncrements<Dim> StressUpdate<Dim>::kept_strain(Scene<Dim>& scene, std::uin
 template <int Dim>
 void StressUpdate<Dim>::begin_step(const Scene<Dim>& scene) {
   if (f_bar_) {
-    cells_.resize(scene.contact == nullptr ? 1 : static_cast<std::size_t>(scene.contact->bodies()));
+    cells_.resize(static_cast<std::size_t>(scene.bodies()));
     for (auto& cells : cells_) cells.resize(scene.blocks, scene.shape->node_shift());
   }
   motion_.assign(scene.blocks.particle_blocks().size(), {});

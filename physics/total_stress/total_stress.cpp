@@ -28,26 +28,10 @@ const Case& without_water(const Case& definition) {
   return definition;
 }
 
-/// What does not go with bodies that do not stick together.
-void check_contact(const Case& definition) {
-  if (!definition.contact) return;
-  Problems problems;
-  const auto refuse = [&](const std::string& what, const std::string& instead) {
-    problems.add(definition.contact->place, fmt::format("contact: it does not go with {}; {}", what, instead));
-  };
-  const SchemeCase& scheme = definition.scheme;
-  if (scheme.integration != "explicit")
-    refuse("`integration: " + scheme.integration + "`", "take `integration: explicit`");
-  if (scheme.stress_update != "usl")
-    refuse("`stress_update: " + scheme.stress_update + "`", "it gains energy where bodies meet; take usl");
-  if (definition.surface_loads) refuse("`surface_loads`", "load the bodies by weight or by faces that move");
-  problems.throw_if_any();
-}
-
 /// The case, if nothing in it is unknown here. Throws CaseError.
 const Case& checked(const Case& definition) {
   without_water(definition);
-  check_contact(definition);
+  ContactProblems(definition).throw_if_any();
   return definition;
 }
 
@@ -122,7 +106,7 @@ void TotalStress<Dim>::step(Scene<Dim>& scene, double dt) {
     return;
   }
   stress_.begin_step(scene);
-  if (rough_under_load(scene)) wall_.resize(scene.blocks, scene.shape->reach());
+  if (rough_under_load(scene)) scene.resize(wall_);
   switch (stress_.timing()) {
     case StressTiming::usf:
       step_usf(scene, dt);
@@ -227,7 +211,7 @@ template <int Dim>
 void TotalStress<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                                       ScatterWhat what) {
   if (!outside_.any()) {
-    scatter_block(scene, what, 0, b);
+    scatter_block(scene, what, 0, b, scene.scatter_input(block));
     return;
   }
   ScatterInput<Dim> in = scene.scatter_input(block);
@@ -244,7 +228,7 @@ void TotalStress<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const Pa
   if (rough_under_load(scene)) {
     in.stress.fill(columns.data(no_stress_));
     for (int a = 0; a < Dim; ++a) in.stress[a] = here;
-    pressed_.scatter(scene, b, in, ScatterWhat::force, wall_);
+    pressed_.scatter(scene, b, in, ScatterWhat::force, wall_.front());
   }
   pressed_.start_work(scene, b, block);
 }

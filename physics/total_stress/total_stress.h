@@ -48,7 +48,7 @@ class TotalStress final : public PhysicsModule<Dim> {
   void scatter_forces(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, ScatterWhat what);
   void add_load_work(Sweep<Dim>& sweep, Scene<Dim>& scene);
   /// The forces of loads alone, or null where no face has friction.
-  NodeFields<Dim>* loads_alone(const Scene<Dim>& scene) { return rough_under_load(scene) ? &wall_ : nullptr; }
+  FieldsByBody<Dim>* loads_alone(const Scene<Dim>& scene) { return rough_under_load(scene) ? &wall_ : nullptr; }
   bool rough_under_load(const Scene<Dim>& scene) const { return outside_.any() && scene.any_friction(); }
 
   StressUpdate<Dim> stress_;
@@ -59,7 +59,7 @@ class TotalStress final : public PhysicsModule<Dim> {
   PressedParticles<Dim> pressed_;
   ColumnId loaded_stress_;  // normal stresses with the pressure from outside
   ColumnId no_stress_;
-  NodeFields<Dim> wall_;  // forces of the loads alone: they act on the surface, and not between material and faces
+  FieldsByBody<Dim> wall_;  // forces of the loads alone: they act on the surface, and not between material and faces
 };
 
 }  // namespace sluice

@@ -170,7 +170,7 @@ void PoreWater<Dim>::scatter_forces(Scene<Dim>& scene, std::size_t b, const Part
     in.stress[a] = total;
   }
   if (!outside.any()) {
-    scene.shape->scatter(what, in, 0, scene.nodes.momentum_tile(b), scene.nodes.force_tile(b));
+    scatter_block(scene, what, 0, b, in);
     return;
   }
   pressed_.take(scene, block, outside);
@@ -206,11 +206,31 @@ void PoreWater<Dim>::take_pressure(Scene<Dim>& scene, std::size_t b, const Parti
   }
 }
 
+namespace {
+
+/// Calls scatter(particles, force tile) for the runs of particles of a block and the tile of their body's fields, which
+/// are fields(body); bodies that have no particles there get zeros.
+template <int Dim, class Fields, class Scatter>
+void scatter_to_bodies(const Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, const Fields& fields,
+                       const Scatter& scatter) {
+  TilesOfRuns runs(scene.nodes.tile_size());
+  for_bodies(scene, block, [&](int body, const BlockParticles<Dim>& particles, std::uint32_t) {
+    runs.add_run(body, std::array{fields(body).force_tile(b)},
+                 [&](const std::array<Lane*, 1>& tile) { scatter(particles, tile[0]); });
+    runs.begin(body);
+  });
+  for (int body = 0; body < scene.bodies(); ++body)
+    if (!runs.has_begun(body)) std::fill_n(fields(body).force_tile(b), scene.nodes.tile_size(), Lane{});
+}
+
+}  // namespace
+
 template <int Dim>
 void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                              const PressureEquation<Dim>& equation) {
   if (!equation.is_wet(b)) {
-    std::fill_n(scene.nodes.force_tile(b), scene.nodes.tile_size(), Lane{});
+    for (int body = 0; body < scene.bodies(); ++body)
+      std::fill_n(scene.nodes_of(body).force_tile(b), scene.nodes.tile_size(), Lane{});
     return;
   }
   Columns& columns = scene.particles.columns;
@@ -221,8 +241,12 @@ void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlo
   pore_water::add_scaled(block.end - block.begin, added + block.begin, -water_.increment, pressure + block.begin,
                          change + block.begin);
   std::copy(added + block.begin, added + block.end, pressure + block.begin);
-  scene.shape->scatter_pressure(scene.view(block), columns.data(scene.particles.volume), change,
-                                scene.nodes.force_tile(b));
+  const double* const volume = columns.data(scene.particles.volume);
+  scatter_to_bodies(
+      scene, b, block, [&](int body) -> NodeFields<Dim>& { return scene.nodes_of(body); },
+      [&](const BlockParticles<Dim>& particles, Lane* tile) {
+        scene.shape->scatter_pressure(particles, volume, change, tile);
+      });
 }
 
 template <int Dim>
@@ -237,6 +261,33 @@ void PoreWater<Dim>::scatter_pressure(Scene<Dim>& scene, std::size_t b, const Pa
     for (std::uint32_t p = block.begin; p < block.end; ++p) excess[p] -= here[p];
   }
   scene.shape->scatter_pressure(scene.view(block), columns.data(scene.particles.volume), excess, nodes.force_tile(b));
+}
+
+/// The forces of the pressure and, as a body force, its gradient: by the divergence theorem what is left is the
+/// surface.
+template <int Dim>
+void PoreWater<Dim>::scatter_traction(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
+                                      FieldsByBody<Dim>& nodes) {
+  Columns& columns = scene.particles.columns;
+  const double* const pressure = columns.data(pressure_);
+  const double* const volume = columns.data(scene.particles.volume);
+  ScatterInput<Dim> in = scene.scatter_input(block);
+  in.stress.fill(columns.data(zero_));
+  double* const stress = columns.data(total_stress_);
+  for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] = -pressure[p];
+  for (int a = 0; a < Dim; ++a) {
+    const double* const gradient = columns.data(pressure_gradient_, a);
+    double* const force = columns.data(acceleration_, a);  // which has served its purpose in the step
+    for (std::uint32_t p = block.begin; p < block.end; ++p) force[p] = volume[p] * gradient[p];
+    in.stress[a] = stress;
+    in.body_force[a] = force;
+  }
+  scatter_to_bodies(
+      scene, b, block, [&](int body) -> NodeFields<Dim>& { return nodes[static_cast<std::size_t>(body)]; },
+      [&](const BlockParticles<Dim>& particles, Lane* tile) {
+        in.particles = particles;
+        scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, tile);
+      });
 }
 
 // ---- to cells and vertices ----
@@ -260,8 +311,9 @@ void PoreWater<Dim>::take_prediction(Scene<Dim>& scene, std::size_t b, const Par
   Columns& columns = scene.particles.columns;
   std::array<double*, Dim> change;
   for (int a = 0; a < Dim; ++a) change[a] = columns.data(acceleration_, a);
-  scene.nodes.load_motion(scene.blocks, b, work.motion_tile.data());
-  scene.shape->gather_divergence(scene.view(block), work.motion_tile.data(), columns.data(divergence_), change);
+  from_nodes(scene, b, block, work.motion_tile.data(), [&](const BlockParticles<Dim>& particles, std::uint32_t) {
+    scene.shape->gather_divergence(particles, work.motion_tile.data(), columns.data(divergence_), change);
+  });
 }
 
 template <int Dim>

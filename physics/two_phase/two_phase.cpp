@@ -42,10 +42,18 @@ TwoPhase<Dim>::TwoPhase(const Case& definition)
     throw CaseError(definition.obstacles.front().place,
                     "obstacles: `formulation: explicit` does not know them, for its particles have no gradient of the "
                     "pressure that could stand at their surfaces; take `formulation: u-p` or `v-w-p`");
-  if (definition.contact)
-    throw CaseError(definition.contact->place,
-                    "contact: the physics two_phase does not know it, for water would have to pass from body to body; "
-                    "take `physics: total_stress`");
+  check_contact(definition);
+}
+
+template <int Dim>
+void TwoPhase<Dim>::check_contact(const Case& definition) const {
+  ContactProblems problems(definition);
+  if (water_.formulation != Formulation::u_p) problems.refuse("this `water.formulation`", "take u-p");
+  if (!definition.obstacles.empty()) problems.refuse("`obstacles` where there is water", "take faces of the grid");
+  if (outside_.any_ponds()) problems.refuse("`water.ponds`", "they would press into the joint between the bodies");
+  for (const auto& [name, face] : definition.faces)
+    if (face.absorbing) problems.refuse("`absorbing` of boundaries." + name + " where there is water", "take a roller");
+  problems.throw_if_any();
 }
 
 /// Points that change keep their grains and their water: porosity follows from the density of the grains.
@@ -215,13 +223,16 @@ void TwoPhase<Dim>::collect(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
 template <int Dim>
 void TwoPhase<Dim>::correct(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
   const bool friction = scene.any_friction();
-  if (friction) wall_.resize(scene.blocks, scene.shape->reach());
+  if (friction) scene.resize(wall_);
   sweep.over_particles([this, &scene, friction](Items some) {
     const auto timing = scene.clock.time(Stage::scatter);
     const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>&) {
       pores_.correct(scene, b, block, pressure_);
       at_obstacles_.scatter(scene, b, block, 1, outside_);
-      if (friction) pores_.scatter_pressure(scene, b, block, outside_, wall_);
+      if (friction && scene.contact != nullptr)
+        pores_.scatter_traction(scene, b, block, wall_);
+      else if (friction)
+        pores_.scatter_pressure(scene, b, block, outside_, wall_.front());
     };
     for_each_block(scene, stress_.workspaces(), body, some);
   });

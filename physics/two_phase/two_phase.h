@@ -40,6 +40,7 @@ class TwoPhase final : public PhysicsModule<Dim> {
  private:
   void start_seepage(Scene<Dim>& scene);
   void check_changes(const Case& definition) const;
+  void check_contact(const Case& definition) const;
   void step_projected(Scene<Dim>& scene, double dt);
   void step_explicit(Scene<Dim>& scene, double dt);
   void predict(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick);
@@ -60,7 +61,7 @@ class TwoPhase final : public PhysicsModule<Dim> {
   RelativeMotion<Dim> relative_;
   ExternalPressure<Dim> outside_;
   PressureEquation<Dim> pressure_;
-  NodeFields<Dim> wall_;             // forces of the pressure alone, which presses on faces without friction
+  FieldsByBody<Dim> wall_;           // forces of the pressure alone, which presses on surfaces without friction
   std::vector<double> dissipation_;  // by block, in a step: power of the flow through the pores [W]
   double dissipated_ = 0;            // [J], since the start
   double discharge_ = 0;             // of the steady seepage at the start [m3/s]
