@@ -50,6 +50,15 @@ void Faces<Dim>::impose(const NodeBlock<Dim>& nodes, Lane* motion, Moment moment
     }
 }
 
+template <int Dim>
+void Faces<Dim>::fix_node(int axis, int side, const NodeMotion<Dim>& node) const {
+  Touch<Dim> touch;
+  touch.out[axis] = side == 0 ? -1 : 1;
+  touch.velocity = velocity_[static_cast<std::size_t>(2 * axis + side)].now;
+  touch.friction = true;
+  impose_on_node<Dim>(face(axis, side), touch, node);
+}
+
 namespace {
 
 bool has_friction(const FaceCase& face) {

@@ -37,6 +37,8 @@ class Faces {
   void fix_with_friction(const NodeBlock<Dim>& nodes, Lane* motion, const Beside& beside = {}) const {
     impose(nodes, motion, Moment::kicked, beside);
   }
+  /// The same for one node of a face.
+  void fix_node(int axis, int side, const NodeMotion<Dim>& node) const;
   bool any_friction() const;
   bool any_adhesion() const;
 

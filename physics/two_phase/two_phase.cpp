@@ -123,7 +123,10 @@ void TwoPhase<Dim>::start_seepage(Scene<Dim>& scene) {
 
 template <int Dim>
 void TwoPhase<Dim>::step(Scene<Dim>& scene, double dt) {
-  if (activate_blocks(scene) || !placed_) pressure_.prepare(scene, pores_.wet_blocks(scene));
+  if (activate_blocks(scene) || !placed_) {
+    pressure_.prepare(scene, pores_.wet_blocks(scene));
+    if (water_.join_films) films_.find(scene);
+  }
   placed_ = true;
   stress_.begin_step(scene);
   if (relative_.active()) relative_.begin_step(scene);
@@ -140,15 +143,23 @@ void TwoPhase<Dim>::step(Scene<Dim>& scene, double dt) {
 template <int Dim>
 void TwoPhase<Dim>::step_projected(Scene<Dim>& scene, double dt) {
   const double kick = scene.kick(dt);
-  Sweep<Dim> to_grid(scene.blocks);
-  predict(to_grid, scene, kick);
-  collect(to_grid, scene, kick);
-  to_grid.run();
+  Sweep<Dim> to_nodes(scene.blocks);
+  predict(to_nodes, scene, kick);
+  to_nodes.run();
+  join_films(scene);
 
+  Sweep<Dim> to_vertices(scene.blocks);
+  collect(to_vertices, scene, kick);
+  to_vertices.run();
   pressure_.solve(scene, outside_, {dt, kick, scene.time + dt, water_.stabilisation, scene.step == 0});
 
+  Sweep<Dim> correction(scene.blocks);
+  correct(correction, scene, kick);
+  correction.run();
+  join_films(scene);
+
   Sweep<Dim> to_particles(scene.blocks);
-  correct(to_particles, scene, kick);
+  if (relative_.active()) relative_.advance(to_particles, scene, stress_.workspaces(), kick);
   gather(to_particles, scene, dt);
   to_particles.run();
 }
@@ -239,7 +250,12 @@ void TwoPhase<Dim>::correct(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
   sweep.over_nodes([this, &scene, kick, friction](Items some) {
     correct_nodes(scene, kick, friction ? &wall_ : nullptr, some, at_obstacles_.nodes());
   });
-  if (relative_.active()) relative_.advance(sweep, scene, stress_.workspaces(), kick);
+}
+
+template <int Dim>
+void TwoPhase<Dim>::join_films(Scene<Dim>& scene) {
+  const auto timing = scene.clock.time(Stage::nodes);
+  films_.join(scene);
 }
 
 /// Particles move and strain with the nodes; their pores follow.

@@ -14,6 +14,7 @@
 #include "physics/two_phase/pore_water.h"
 #include "physics/two_phase/pressure_equation.h"
 #include "physics/two_phase/relative_motion.h"
+#include "physics/two_phase/thin_films.h"
 #include "physics/two_phase/water.h"
 
 namespace sluice {
@@ -46,6 +47,7 @@ class TwoPhase final : public PhysicsModule<Dim> {
   void predict(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick);
   void collect(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick);
   void correct(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick);
+  void join_films(Scene<Dim>& scene);
   void gather(Sweep<Dim>& sweep, Scene<Dim>& scene, double dt);
   void begin_sums(const Scene<Dim>& scene);
   void end_sums(double kick);
@@ -61,6 +63,7 @@ class TwoPhase final : public PhysicsModule<Dim> {
   RelativeMotion<Dim> relative_;
   ExternalPressure<Dim> outside_;
   PressureEquation<Dim> pressure_;
+  ThinFilms<Dim> films_;
   FieldsByBody<Dim> wall_;           // forces of the pressure alone, which presses on surfaces without friction
   std::vector<double> dissipation_;  // by block, in a step: power of the flow through the pores [W]
   double dissipated_ = 0;            // [J], since the start

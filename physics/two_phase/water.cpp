@@ -149,6 +149,11 @@ const Schema<WaterCase>& schema() {
                    "Against oscillations of the undrained pressure in short steps, and where particles lie unevenly; "
                    "acts only there.",
                    true)
+          .boolean(
+              "join_films", &W::join_films,
+              "Films on faces of the grid that are thinner than 0.4 of a cell move as one; without, for comparison, "
+              "they may burst.",
+              true)
           .choice("surface", &W::surface_within_cells, {{"within_cells", true}, {"at_vertices", false}},
                   "Where the pressure is that of the air: where the surface is found between two vertices, or at the "
                   "first vertices outside of it: for comparison, wrong by up to a cell.",

@@ -49,6 +49,7 @@ struct WaterCase {
   double saturation = 1;
   double increment = 1;  ///< beta: share of the old pressure that the predictor uses
   bool stabilisation = true;
+  bool join_films = true;                    ///< eq. (49e); else they burst, for comparison
   bool surface_within_cells = true;          ///< eq. (48); else the pressure is zero at whole vertices, for comparison
   std::vector<std::array<double, 2>> table;  ///< [m]: points above it hold no water; absent: all are saturated
   InitialPressure initial;
