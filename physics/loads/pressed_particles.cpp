@@ -26,6 +26,17 @@ void PressedParticles<Dim>::take(Scene<Dim>& scene, const ParticleBlock<Dim>& bl
 }
 
 template <int Dim>
+void PressedParticles<Dim>::add_to(double* stress, const std::array<double*, Dim>& force, const Particles& particles,
+                                   const ParticleBlock<Dim>& block) const {
+  const double* const here = pressure(particles);
+  for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] += here[p];
+  for (int a = 0; a < Dim; ++a) {
+    const double* const own = particles.columns.data(force_, a);
+    for (std::uint32_t p = block.begin; p < block.end; ++p) force[static_cast<std::size_t>(a)][p] += own[p];
+  }
+}
+
+template <int Dim>
 SkeletonLoads<Dim> PressedParticles<Dim>::at_rest(Scene<Dim>& scene, const ExternalPressure<Dim>& outside,
                                                   std::vector<Workspace<Dim>>& workspaces, double* push) {
   const double* here = pressure(scene.particles);

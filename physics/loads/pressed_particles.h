@@ -2,6 +2,7 @@
 /// Every physics module with loads on surfaces owns one. docs/theory.md, section 8.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/simulation/stages.h"
@@ -22,6 +23,10 @@ class PressedParticles {
 
   /// P as taken [Pa], a whole column.
   const double* pressure(const Particles& particles) const { return particles.columns.data(pressure_); }
+
+  /// Adds P to a normal stress and -V grad P to a body force of the particles of a block, whole columns.
+  void add_to(double* stress, const std::array<double*, Dim>& force, const Particles& particles,
+              const ParticleBlock<Dim>& block) const;
 
   /// Takes at all particles, and gives what acts on a body at rest: less P in `push`, the pressure that the particles
   /// have otherwise [Pa], and the body force.

@@ -249,39 +249,27 @@ void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlo
       });
 }
 
-template <int Dim>
-void PoreWater<Dim>::scatter_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
-                                      const ExternalPressure<Dim>& outside, NodeFields<Dim>& nodes) {
-  Columns& columns = scene.particles.columns;
-  const double* pressure = columns.data(pressure_);
-  double* excess = columns.data(total_stress_);
-  std::copy(pressure + block.begin, pressure + block.end, excess + block.begin);
-  if (outside.any()) {
-    const double* here = pressed_.pressure(scene.particles);
-    for (std::uint32_t p = block.begin; p < block.end; ++p) excess[p] -= here[p];
-  }
-  scene.shape->scatter_pressure(scene.view(block), columns.data(scene.particles.volume), excess, nodes.force_tile(b));
-}
-
 /// The forces of the pressure and, as a body force, its gradient: by the divergence theorem what is left is the
 /// surface.
 template <int Dim>
 void PoreWater<Dim>::scatter_traction(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
-                                      FieldsByBody<Dim>& nodes) {
+                                      const ExternalPressure<Dim>& outside, FieldsByBody<Dim>& nodes) {
   Columns& columns = scene.particles.columns;
   const double* const pressure = columns.data(pressure_);
   const double* const volume = columns.data(scene.particles.volume);
   ScatterInput<Dim> in = scene.scatter_input(block);
   in.stress.fill(columns.data(zero_));
   double* const stress = columns.data(total_stress_);
+  std::array<double*, Dim> forces;
   for (std::uint32_t p = block.begin; p < block.end; ++p) stress[p] = -pressure[p];
   for (int a = 0; a < Dim; ++a) {
     const double* const gradient = columns.data(pressure_gradient_, a);
     double* const force = columns.data(acceleration_, a);  // which has served its purpose in the step
     for (std::uint32_t p = block.begin; p < block.end; ++p) force[p] = volume[p] * gradient[p];
     in.stress[a] = stress;
-    in.body_force[a] = force;
+    in.body_force[a] = forces[static_cast<std::size_t>(a)] = force;
   }
+  if (outside.any()) pressed_.add_to(stress, forces, scene.particles, block);
   scatter_to_bodies(
       scene, b, block, [&](int body) -> NodeFields<Dim>& { return nodes[static_cast<std::size_t>(body)]; },
       [&](const BlockParticles<Dim>& particles, Lane* tile) {

@@ -67,12 +67,10 @@ class PoreWater {
   /// The new pressure from the vertices, and the forces of what it adds to the old one.
   void correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                const PressureEquation<Dim>& equation);
-  /// Forces of the new pressure alone, less that from outside, to the force tiles of `nodes`; after `correct`.
-  void scatter_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
-                        const ExternalPressure<Dim>& outside, NodeFields<Dim>& nodes);
-  /// What of these acts on the surface of the material, body by body. Then the predicted change of the particles is
-  /// gone.
-  void scatter_traction(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, FieldsByBody<Dim>& nodes);
+  /// What the new pressure, less that from outside, does on the surface of the material, eq. (49d), to the force tiles
+  /// of `nodes`; after `correct`. Then the predicted change of the particles is gone.
+  void scatter_traction(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
+                        const ExternalPressure<Dim>& outside, FieldsByBody<Dim>& nodes);
   /// Pressure and its gradient at the particles, without forces: at the start.
   void take_pressure(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                      const PressureEquation<Dim>& equation);

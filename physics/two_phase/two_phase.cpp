@@ -240,10 +240,7 @@ void TwoPhase<Dim>::correct(Sweep<Dim>& sweep, Scene<Dim>& scene, double kick) {
     const auto body = [&](std::size_t b, const auto& block, Workspace<Dim>&) {
       pores_.correct(scene, b, block, pressure_);
       at_obstacles_.scatter(scene, b, block, 1, outside_);
-      if (friction && scene.contact != nullptr)
-        pores_.scatter_traction(scene, b, block, wall_);
-      else if (friction)
-        pores_.scatter_pressure(scene, b, block, outside_, wall_.front());
+      if (friction) pores_.scatter_traction(scene, b, block, outside_, wall_);
     };
     for_each_block(scene, stress_.workspaces(), body, some);
   });

@@ -1,4 +1,4 @@
-/// Bodies that do not stick to each other, with water in their pores.
+/// Friction of soil with water in its pores: between bodies that do not stick to each other, and on faces.
 
 #include "core/parallel/parallel.h"
 #include "core/simulation/physics_module.h"
@@ -64,6 +64,25 @@ INSTANTIATE_TEST_SUITE_P(Schemes, WetLayer,
                                            Scheme{"cubic_bspline", "flip", "usl"}, Scheme{"ugimp", "tpic", "usl"},
                                            Scheme{"quadratic_bspline", "xpic", "usl"}),
                          scheme_name);
+
+/// Way of a wet layer of 1 m on a rough face in half a second [m].
+double way_on_a_face(double cell, double friction) {
+  SceneText scene = layers({}, 0, true, true);
+  scene.grid = fmt::format("{{min: [0 m, 0 m], max: [4 m, 3 m], cell: {} m}}", cell);
+  scene.bodies = "  - {material: layer, box: {min: [0 m, 0 m], max: [4 m, 1 m]}}";
+  scene.boundaries =
+      fmt::format("{{left: periodic, right: periodic, bottom: {{normal: contact, friction: {}}}}}", friction);
+  scene.more = "water: {bulk_modulus: 2.2 GPa, initial: {method: hydrostatic, level: 1 m}}\n";
+  return way(scene);
+}
+
+// The same on a face, in four and in eight cells: 1 % and half of it. (With all the force of the pressure at a node
+// taken for what presses on the face, in place of eq. (49d), it was 4 and 2 %.)
+TEST(WetLayerOnAFace, SlidesWithTheFrictionOfEffectiveStress) {
+  const double expected = g / std::hypot(1.0, slope) * (slope - 0.3 * (1 - 1000 / wet_density)) * half_square;
+  EXPECT_NEAR(way_on_a_face(0.25, 0.3), expected, 0.01 * expected);
+  EXPECT_NEAR(way_on_a_face(0.125, 0.3), expected, 0.005 * expected);
+}
 
 // The negative control: the same weight without water, and the friction of all of it, holds.
 TEST(DryLayer, IsHeldByTheSameFriction) { EXPECT_LT(std::abs(way(layers({}, 0.6, false, false))), 0.005); }
