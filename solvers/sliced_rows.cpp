@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <numeric>
 
 #include "core/parallel/multitarget.h"
 
@@ -10,23 +11,35 @@ namespace sluice {
 
 namespace {
 
-struct Entry {
-  int column, slot;
-};
+/// Both triangles, row by row; in a row by column, as the lower triangle is read.
+struct FullRows {
+  struct Entry {
+    int column, slot;
+  };
+  std::vector<std::size_t> begin;
+  std::vector<Entry> entry;
 
-/// Both triangles, row by row; in a row by column.
-std::vector<std::vector<Entry>> full_rows(const SymmetricPattern& pattern) {
-  const auto n = static_cast<std::size_t>(pattern.size());
-  std::vector<std::vector<Entry>> rows(n);
-  for (std::size_t column = 0; column < n; ++column)
-    for (int k = pattern.column_begin[column]; k < pattern.column_begin[column + 1]; ++k) {
-      const auto row = static_cast<std::size_t>(pattern.row[static_cast<std::size_t>(k)]);
-      rows[row].push_back({static_cast<int>(column), k});
-      if (row != column) rows[column].push_back({static_cast<int>(row), k});
-    }
-  for (auto& row : rows) std::ranges::sort(row, {}, &Entry::column);
-  return rows;
-}
+  explicit FullRows(const SymmetricPattern& pattern) : begin(static_cast<std::size_t>(pattern.size()) + 1, 0) {
+    const auto for_entries = [&](const auto& visit) {
+      for (std::size_t column = 0; column + 1 < begin.size(); ++column)
+        for (int k = pattern.column_begin[column]; k < pattern.column_begin[column + 1]; ++k) {
+          const auto row = static_cast<std::size_t>(pattern.row[static_cast<std::size_t>(k)]);
+          visit(row, column, k);
+          if (row != column) visit(column, row, k);
+        }
+    };
+    for_entries([&](std::size_t row, std::size_t, int) { ++begin[row + 1]; });
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    entry.resize(begin.back());
+    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+    for_entries([&](std::size_t row, std::size_t column, int slot) {
+      entry[next[row]++] = {static_cast<int>(column), slot};
+    });
+  }
+  std::span<const Entry> operator[](std::size_t row) const {
+    return std::span(entry).subspan(begin[row], begin[row + 1] - begin[row]);
+  }
+};
 
 using Eight = double __attribute__((vector_size(SlicedRows::lanes * sizeof(double))));
 
@@ -71,10 +84,11 @@ SLUICE_MULTITARGET void take(const int* __restrict slot, const double* __restric
 }  // namespace
 
 SlicedRows::SlicedRows(const SymmetricPattern& pattern) {
-  const auto rows = full_rows(pattern);
+  const FullRows rows(pattern);
+  const auto n = static_cast<std::size_t>(pattern.size());
   begin_.push_back(0);
-  for (std::size_t from = 0; from < rows.size(); from += lanes) {
-    const std::size_t to = std::min(from + lanes, rows.size());
+  for (std::size_t from = 0; from < n; from += lanes) {
+    const std::size_t to = std::min(from + lanes, n);
     std::size_t steps = 0;
     for (std::size_t r = from; r < to; ++r) steps = std::max(steps, rows[r].size());
     for (std::size_t k = 0; k < steps; ++k) {

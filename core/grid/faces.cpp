@@ -28,6 +28,16 @@ void Faces<Dim>::begin_step(double time_before, double time_now) {
 }
 
 template <int Dim>
+Touch<Dim> Faces<Dim>::touch_of(int axis, int side, Moment moment) const {
+  const SurfaceVelocity<Dim>& velocity = velocity_[static_cast<std::size_t>(2 * axis + side)];
+  Touch<Dim> touch;
+  touch.out[axis] = side == 0 ? -1 : 1;
+  touch.velocity = moment == Moment::before ? velocity.before : velocity.now;
+  touch.friction = moment == Moment::kicked;
+  return touch;
+}
+
+template <int Dim>
 void Faces<Dim>::impose(const NodeBlock<Dim>& nodes, Lane* motion, Moment moment, const Beside& beside) const {
   constexpr int width = block_width<Dim>;
   for (int axis = 0; axis < Dim; ++axis)
@@ -35,11 +45,7 @@ void Faces<Dim>::impose(const NodeBlock<Dim>& nodes, Lane* motion, Moment moment
       const FaceCase& rule = face(axis, side);
       const int layer = wall_node(axis, side) - nodes.first_node[axis];
       if (rule.normal == FaceCase::Normal::free || layer < nodes.low[axis] || layer >= nodes.high[axis]) continue;
-      const SurfaceVelocity<Dim>& velocity = velocity_[static_cast<std::size_t>(2 * axis + side)];
-      Touch<Dim> touch;
-      touch.out[axis] = side == 0 ? -1 : 1;
-      touch.velocity = moment == Moment::before ? velocity.before : velocity.now;
-      touch.friction = moment == Moment::kicked;
+      Touch<Dim> touch = touch_of(axis, side, moment);
       for (int n = 0; n < block_nodes<Dim>; ++n) {
         if (n / power(width, axis) % width != layer) continue;
         if (beside.relief != nullptr) touch.relief[axis] = beside.relief[n][axis];
@@ -52,11 +58,7 @@ void Faces<Dim>::impose(const NodeBlock<Dim>& nodes, Lane* motion, Moment moment
 
 template <int Dim>
 void Faces<Dim>::fix_node(int axis, int side, const NodeMotion<Dim>& node) const {
-  Touch<Dim> touch;
-  touch.out[axis] = side == 0 ? -1 : 1;
-  touch.velocity = velocity_[static_cast<std::size_t>(2 * axis + side)].now;
-  touch.friction = true;
-  impose_on_node<Dim>(face(axis, side), touch, node);
+  impose_on_node<Dim>(face(axis, side), touch_of(axis, side, Moment::kicked), node);
 }
 
 namespace {

@@ -50,6 +50,7 @@ class Faces {
 
  private:
   void impose(const NodeBlock<Dim>& nodes, Lane* motion, Moment moment, const Beside& beside) const;
+  Touch<Dim> touch_of(int axis, int side, Moment moment) const;
 
   std::array<FaceCase, 2 * Dim> face_{};
   int first_node_;

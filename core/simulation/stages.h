@@ -143,6 +143,21 @@ class TilesOfRuns {
   std::uint64_t begun_ = 0;
 };
 
+/// Calls fill(body, particles, tile) for the particles of a block, as for_bodies does, with their body's tile, which is
+/// tile_of(body); bodies that have no particles there get zeros.
+template <int Dim, class TileOf, class Fill>
+void fill_tiles_of_bodies(const Scene<Dim>& scene, const ParticleBlock<Dim>& block, const TileOf& tile_of,
+                          const Fill& fill) {
+  TilesOfRuns runs(scene.nodes.tile_size());
+  for_bodies(scene, block, [&](int body, const BlockParticles<Dim>& particles, std::uint32_t) {
+    runs.add_run(body, std::array<Lane*, 1>{tile_of(body)},
+                 [&](const std::array<Lane*, 1>& tile) { fill(body, particles, tile[0]); });
+    runs.begin(body);
+  });
+  for (int body = 0; body < scene.bodies(); ++body)
+    if (!runs.has_begun(body)) std::fill_n(tile_of(body), scene.nodes.tile_size(), Lane{});
+}
+
 /// Nodes to particles: velocity, position, affine field, eqs. (19)-(21). Positions go to `position_column`, domains
 /// that deform to `domain_column`; without a column they stay as they are.
 template <int Dim>

@@ -65,18 +65,12 @@ void VelocityFilter<Dim>::map(Scene<Dim>& scene, int k, ColumnId mass, Items som
   const std::size_t from = static_cast<std::size_t>(k % 2), to = 1 - from;
   const double* const masses = scene.particles.columns.data(mass);
   const auto body = [&](std::size_t b, const ParticleBlock<Dim>& block, Workspace<Dim>& work) {
-    TilesOfRuns runs(scene.nodes.tile_size());
-    for_bodies(scene, block, [&](int own, const BlockParticles<Dim>& particles, std::uint32_t) {
-      auto& nodes = nodes_[static_cast<std::size_t>(own)];
-      nodes[from].load_motion(scene.blocks, b, work.motion_tile.data());
-      runs.add_run(own, std::array{nodes[to].momentum_tile(b)}, [&](const std::array<Lane*, 1>& tile) {
-        scene.shape->map_again(particles, masses, work.motion_tile.data(), tile[0]);
-      });
-      runs.begin(own);
-    });
-    for (std::size_t g = 0; g < nodes_.size(); ++g)
-      if (!runs.has_begun(static_cast<int>(g)))
-        std::fill_n(nodes_[g][to].momentum_tile(b), scene.nodes.tile_size(), Lane{});
+    fill_tiles_of_bodies(
+        scene, block, [&](int own) { return nodes_[static_cast<std::size_t>(own)][to].momentum_tile(b); },
+        [&](int own, const BlockParticles<Dim>& particles, Lane* tile) {
+          nodes_[static_cast<std::size_t>(own)][from].load_motion(scene.blocks, b, work.motion_tile.data());
+          scene.shape->map_again(particles, masses, work.motion_tile.data(), tile);
+        });
   };
   for_each_block(scene, workspaces_, body, some);
 }

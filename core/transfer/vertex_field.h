@@ -23,6 +23,7 @@ struct FieldAtParticles {
   std::array<double*, Dim> gradient{};  ///< per metre
 };
 
+/// The field and its gradient at the particles of a block; points beyond the tile count to the cells at its rim.
 template <int Dim>
 void interpolate(const VertexTile<Dim>& tile, const BlockParticles<Dim>& particles, const FieldAtParticles<Dim>& out);
 

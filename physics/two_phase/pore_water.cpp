@@ -206,25 +206,6 @@ void PoreWater<Dim>::take_pressure(Scene<Dim>& scene, std::size_t b, const Parti
   }
 }
 
-namespace {
-
-/// Calls scatter(particles, force tile) for the runs of particles of a block and the tile of their body's fields, which
-/// are fields(body); bodies that have no particles there get zeros.
-template <int Dim, class Fields, class Scatter>
-void scatter_to_bodies(const Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block, const Fields& fields,
-                       const Scatter& scatter) {
-  TilesOfRuns runs(scene.nodes.tile_size());
-  for_bodies(scene, block, [&](int body, const BlockParticles<Dim>& particles, std::uint32_t) {
-    runs.add_run(body, std::array{fields(body).force_tile(b)},
-                 [&](const std::array<Lane*, 1>& tile) { scatter(particles, tile[0]); });
-    runs.begin(body);
-  });
-  for (int body = 0; body < scene.bodies(); ++body)
-    if (!runs.has_begun(body)) std::fill_n(fields(body).force_tile(b), scene.nodes.tile_size(), Lane{});
-}
-
-}  // namespace
-
 template <int Dim>
 void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlock<Dim>& block,
                              const PressureEquation<Dim>& equation) {
@@ -242,9 +223,9 @@ void PoreWater<Dim>::correct(Scene<Dim>& scene, std::size_t b, const ParticleBlo
                          change + block.begin);
   std::copy(added + block.begin, added + block.end, pressure + block.begin);
   const double* const volume = columns.data(scene.particles.volume);
-  scatter_to_bodies(
-      scene, b, block, [&](int body) -> NodeFields<Dim>& { return scene.nodes_of(body); },
-      [&](const BlockParticles<Dim>& particles, Lane* tile) {
+  fill_tiles_of_bodies(
+      scene, block, [&](int body) { return scene.nodes_of(body).force_tile(b); },
+      [&](int, const BlockParticles<Dim>& particles, Lane* tile) {
         scene.shape->scatter_pressure(particles, volume, change, tile);
       });
 }
@@ -270,9 +251,9 @@ void PoreWater<Dim>::scatter_traction(Scene<Dim>& scene, std::size_t b, const Pa
     in.body_force[a] = forces[static_cast<std::size_t>(a)] = force;
   }
   if (outside.any()) pressed_.add_to(stress, forces, scene.particles, block);
-  scatter_to_bodies(
-      scene, b, block, [&](int body) -> NodeFields<Dim>& { return nodes[static_cast<std::size_t>(body)]; },
-      [&](const BlockParticles<Dim>& particles, Lane* tile) {
+  fill_tiles_of_bodies(
+      scene, block, [&](int body) { return nodes[static_cast<std::size_t>(body)].force_tile(b); },
+      [&](int, const BlockParticles<Dim>& particles, Lane* tile) {
         in.particles = particles;
         scene.shape->scatter(ScatterWhat::force, in, 0, nullptr, tile);
       });

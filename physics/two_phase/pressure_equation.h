@@ -5,7 +5,7 @@
 ///   prepare(scene)                                  which cells and vertices take part
 ///   collect: in parallel over blocks, each fills its cell_sums(b) and vertex_sums(b)
 ///   solve(...)                                      assembles, imposes boundaries, solves, extrapolates
-///   load(b, tile)                                   the new pressure, for a gather with linear shape functions
+///   load(b, tile)                                   the new pressure at the vertices around a block
 #pragma once
 
 #include <memory>

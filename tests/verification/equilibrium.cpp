@@ -20,14 +20,7 @@ double difference(const Particles& a, const Particles& b) {
   return largest / size;
 }
 
-std::string complaint_of(const SceneText& scene) {
-  try {
-    simulate(scene);
-  } catch (const CaseError& error) {
-    return error.what();
-  }
-  return "none";
-}
+std::string complaint_of(const SceneText& scene) { return refusal_of(scene, "none"); }
 
 // ---- elastic ----
 

@@ -288,12 +288,7 @@ std::string complaint_of(const std::string& keys, const std::string& boundaries 
                   .boundaries = boundaries,
                   .scheme = Scheme{}.with(keys),
                   .physics = physics};
-  try {
-    simulate(scene);
-  } catch (const CaseError& error) {
-    return error.what();
-  }
-  return "none";
+  return refusal_of(scene, "none");
 }
 
 TEST(ImplicitSteps, AreRefusedWithReasons) {

@@ -96,6 +96,16 @@ inline std::unique_ptr<Simulation> simulate(const SceneText& scene) {
   return Simulation::create(parse_case(scene.text(), "scene.yaml"));
 }
 
+/// What the program says of a case that it refuses; `accepted` if it does not.
+inline std::string refusal_of(const SceneText& scene, const std::string& accepted = "") {
+  try {
+    simulate(scene);
+  } catch (const CaseError& error) {
+    return error.what();
+  }
+  return accepted;
+}
+
 inline void take_steps(Simulation& simulation, int steps, double until = 1e6) {
   for (int i = 0; i < steps; ++i) simulation.advance(until);
 }

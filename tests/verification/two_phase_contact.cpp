@@ -1,8 +1,8 @@
 /// Friction of soil with water in its pores: between bodies that do not stick to each other, and on faces.
 
-#include "core/parallel/parallel.h"
 #include "core/simulation/physics_module.h"
 #include "tests/verification/body_totals.h"
+#include "tests/verification/resumed_run.h"
 #include "tests/verification/scene_fixture.h"
 
 namespace sluice {
@@ -127,20 +127,9 @@ TEST(WetLayersInSpace, SlideAndDoNotDependOnThreads) {
     scene.boundaries = "{left: periodic, right: periodic, front: periodic, back: periodic, bottom: fixed}";
     return simulate(scene);
   };
-  const auto reference = make(), first = make();
-  while (reference->time() < 0.3) reference->advance(0.3);
-  take_steps(*first, 29, 0.3);
-  Archive archive;
-  first->store(archive);
-  set_thread_count(3);
-  const auto resumed = make();
-  resumed->restore(archive);
-  while (resumed->time() < 0.3) resumed->advance(0.3);
-  set_thread_count(1);
+  const auto reference = run_and_resume(make, 0.3, 29, {"position", "velocity", "stress", "pore_pressure"});
   const double expected = 0.5 * 0.09 * g / std::hypot(1.0, slope) * (slope - 0.3 * 0.5);
   EXPECT_NEAR(body_of(reference->particles(), "layer").displacement(0), expected, 0.03 * expected);
-  for (const char* column : {"position", "velocity", "stress", "pore_pressure"})
-    EXPECT_EQ(by_id(reference->particles(), column), by_id(resumed->particles(), column)) << column;
 }
 
 std::string refusal(const std::string& more, const std::string& boundaries = "{bottom: fixed}") {
@@ -148,12 +137,7 @@ std::string refusal(const std::string& more, const std::string& boundaries = "{b
   scene.boundaries = boundaries;
   const std::string first = "water: {";
   scene.more.insert(scene.more.find(first) + first.size(), more);
-  try {
-    simulate(scene);
-  } catch (const CaseError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of(scene);
 }
 
 TEST(WetContactRefused, SaysWhatAndWhere) {
